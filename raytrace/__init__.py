@@ -1,0 +1,26 @@
+"""Exact indoor ray tracing: every path of a bounded order, no sampling.
+
+A `Scene` is made from a triangle mesh of vertical wall sheets, a floor and a ceiling. From it
+`trace_paths` finds the paths to given receivers and `compute_radio_map` sums them over a grid.
+Lengths are in metres, heights above the floor, angles in radians, gains linear unless a name
+ends in ``_db`` or ``_dbm``.
+"""
+
+from raytrace.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
+from raytrace.errors import MapFileError, SceneError
+from raytrace.grid import Grid, TraceConfig
+from raytrace.radio_map import RadioMap
+from raytrace.transmitter import Transmitter
+
+__all__ = [
+    "DIPOLE_PEAK_GAIN_DBI",
+    "Antenna",
+    "Grid",
+    "HalfWaveDipole",
+    "Isotropic",
+    "MapFileError",
+    "RadioMap",
+    "SceneError",
+    "TraceConfig",
+    "Transmitter",
+]

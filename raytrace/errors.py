@@ -1,0 +1,9 @@
+"""The errors this package raises at its boundary."""
+
+
+class SceneError(ValueError):
+    """A mesh, material or position that the tracer cannot work with; the message says why."""
+
+
+class MapFileError(ValueError):
+    """A radio map file that is truncated, of another format or of another version."""

@@ -1,0 +1,92 @@
+"""The receiver grid of a map and the limits of a trace."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Receivers at the centres of square cells, all at one height.
+
+    Attributes
+    ----------
+    x, y
+        (n_x,), (n_y,) cell centres [m].
+    height_m
+        Height of the receivers above the floor [m].
+    cell_size_m
+        Side of a cell [m].
+    """
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    height_m: float
+    cell_size_m: float
+
+    @classmethod
+    def over(
+        cls, bounds: tuple[float, float, float, float], cell_size_m: float, height_m: float
+    ) -> "Grid":
+        """Cover a rectangle with cells, the first one in its lower left corner.
+
+        Parameters
+        ----------
+        bounds
+            (x_min, y_min, x_max, y_max) [m].
+        cell_size_m
+            Side of a cell [m]. A last row or column that does not fit whole is kept if its
+            centre lies inside.
+        height_m
+            Height of the receivers [m].
+        """
+        x_min, y_min, x_max, y_max = bounds
+        if not (cell_size_m > 0 and x_max > x_min and y_max > y_min):
+            raise ValueError(
+                f"no grid over bounds {bounds} with cell_size_m = {cell_size_m}: "
+                "expected x_min < x_max, y_min < y_max and a positive cell size"
+            )
+        half = 0.5 * cell_size_m
+        n_x = max(1, int(np.floor((x_max - x_min + half) / cell_size_m - 1e-9)))
+        n_y = max(1, int(np.floor((y_max - y_min + half) / cell_size_m - 1e-9)))
+        return cls(
+            x_min + half + cell_size_m * np.arange(n_x),
+            y_min + half + cell_size_m * np.arange(n_y),
+            float(height_m),
+            float(cell_size_m),
+        )
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(n_y, n_x)."""
+        return len(self.y), len(self.x)
+
+    def points(self) -> NDArray[np.float64]:
+        """Receivers (n_y * n_x, 3) [m], x running fastest."""
+        xx, yy = np.meshgrid(self.x, self.y)
+        return np.column_stack([xx.ravel(), yy.ravel(), np.full(xx.size, self.height_m)])
+
+
+@dataclass(frozen=True)
+class TraceConfig:
+    """How far the tracer goes.
+
+    Attributes
+    ----------
+    max_reflections
+        Most reflections on a path, walls, floor and ceiling together, also on a path with a
+        diffraction (there on both sides of the edge together).
+    max_diffractions
+        0 or 1.
+    """
+
+    max_reflections: int = 6
+    max_diffractions: int = 1
+
+    def __post_init__(self) -> None:
+        """Check the limits; raise ValueError where one cannot be."""
+        if not 0 <= self.max_reflections <= 20:
+            raise ValueError(f"max_reflections = {self.max_reflections}: expected 0 to 20")
+        if self.max_diffractions not in (0, 1):
+            raise ValueError(f"max_diffractions = {self.max_diffractions}: expected 0 or 1")
