@@ -1,0 +1,212 @@
+"""Q-learning with states made from RSS readings as they come.
+
+A row of Q belongs to a state label, not to a cell: several cells can share one, and a cell can
+have several when readings fluctuate. The possible actions are always those of the cell. With one
+label per cell and steady readings this loop does exactly what :mod:`rssnav.kernels.tabular` does,
+bit for bit, only slower.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from rssnav.kernels.common import (
+    EPISODE,
+    HASH_START,
+    N_ROWS,
+    decay_before_episode,
+    extended_hash,
+    record_episode,
+)
+from rssnav.kernels.xoshiro import (
+    gaussian,
+    index_from_low_bits,
+    next_uint64,
+    unit_from_high_bits,
+)
+
+LISTED, TOLERANCE, INTERVALS = range(3)
+"""How a reading becomes a label: by its cell's listed label, tolerance states, fixed bins."""
+
+_NEIGHBOUR_BINS = 2  # bins are half a threshold wide, and a state lies within a threshold
+
+
+class Sensor(NamedTuple):
+    """What the RSS agent reads and how it names it."""
+
+    rss_dbm: NDArray[np.float64]  # (S,) without fluctuation
+    kind: int  # LISTED, TOLERANCE or INTERVALS
+    listed: NDArray[np.int32]  # (S,) label of each cell, for LISTED
+    edges_dbm: NDArray[np.float64]  # ascending bin edges, for INTERVALS
+    threshold_db: float  # Th, for TOLERANCE
+    low_dbm: float  # lower end of bin 0, for TOLERANCE
+    sigma_db: float  # standard deviation of the fluctuation
+    correlation: float  # of the fluctuation from one reading to the next
+    terminal_dbm: float
+    goal_reward: float
+    goal_replaces: bool  # the goal reward stands instead of the RSS difference
+
+
+class Book(NamedTuple):
+    """Tolerance states of one run. Known states lie at least Th apart, so a bin of Th / 2 holds
+    at most one, and all that fit a reading are within two bins of it.
+    """  # noqa: D205
+
+    label_of_bin: NDArray[np.int32]  # (bins,) -1 where no state is known
+    value_dbm: NDArray[np.float64]  # (rows,) reading that created the state
+    fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
+
+
+@njit(inline="always")
+def _draw(generator):
+    bits, generator[0], generator[1], generator[2], generator[3] = next_uint64(
+        generator[0], generator[1], generator[2], generator[3]
+    )
+    return bits
+
+
+@njit(inline="always")
+def _reading(sensor, book, generator, cell):
+    """RSS read in a cell [dBm]: a first-order autoregressive fluctuation on the map's value."""
+    if sensor.sigma_db == 0.0:
+        return sensor.rss_dbm[cell]
+    rho = sensor.correlation
+    innovation = sensor.sigma_db * gaussian(_draw(generator), _draw(generator))
+    book.fluctuation_db[0] = rho * book.fluctuation_db[0] + math.sqrt(1.0 - rho * rho) * innovation
+    return sensor.rss_dbm[cell] + book.fluctuation_db[0]
+
+
+@njit(inline="always")
+def _bin(sensor, book, reading):
+    position = int((reading - sensor.low_dbm) * (2.0 / sensor.threshold_db))
+    return min(max(position, 0), book.label_of_bin.size - 1)
+
+
+@njit(cache=True, nogil=True)
+def _known_state(sensor, book, reading):
+    """Nearest known state within Th of a reading, the older of two as near; -1 if there is none."""
+    centre = _bin(sensor, book, reading)
+    label, nearest = -1, sensor.threshold_db
+    last = min(centre + _NEIGHBOUR_BINS, book.label_of_bin.size - 1)
+    for b in range(max(centre - _NEIGHBOUR_BINS, 0), last + 1):
+        known = book.label_of_bin[b]
+        if known < 0:
+            continue
+        gap = abs(reading - book.value_dbm[known])
+        if gap < nearest or (gap == nearest and label >= 0 and known < label):
+            label, nearest = known, gap
+    return label
+
+
+@njit(inline="always")
+def _label(sensor, book, counters, cell, reading):
+    """Label of a reading; a tolerance state is created when none fits."""
+    if sensor.kind == LISTED:
+        return sensor.listed[cell]
+    if sensor.kind == INTERVALS:
+        return np.searchsorted(sensor.edges_dbm, reading, side="right")
+    label = _known_state(sensor, book, reading)
+    if label < 0:
+        label = counters[N_ROWS]
+        book.value_dbm[label] = reading
+        book.label_of_bin[_bin(sensor, book, reading)] = label
+        counters[N_ROWS] += 1
+    return label
+
+
+@njit(inline="always")
+def _best(moves, all_actions, q, label, cell):
+    """Maximum of a row over the actions that count in a cell, and how many attain it."""
+    best, ties = -np.inf, 0
+    for a in range(8):
+        if all_actions or moves.next_state[8 * cell + a] >= 0:
+            value = q[8 * label + a]
+            ties = ties + 1 if value == best else 1 if value > best else ties
+            best = max(best, value)
+    return best, ties
+
+
+@njit(inline="always")
+def _greedy(moves, parameters, q, generator, label, cell):
+    """Greedy action in a cell, -1 when it is blocked."""
+    best, ties = _best(moves, parameters.all_actions, q, label, cell)
+    skip = np.uint64(0)
+    if parameters.random_ties:
+        skip = index_from_low_bits(_draw(generator), np.uint64(ties))
+    for a in range(8):
+        possible = moves.next_state[8 * cell + a] >= 0
+        if q[8 * label + a] == best and (possible or parameters.all_actions):
+            if skip == 0:
+                return a if possible else -1
+            skip -= np.uint64(1)
+    return -1
+
+
+@njit(cache=True, nogil=True)
+def _fly_episode(moves, sensor, parameters, run, book):
+    """Fly and learn from the start to the goal or the cap.
+
+    Returns (steps, diagonal steps, path hash, terminated).
+    """
+    q, generator, rates, counters = run.q, run.generator, run.rates, run.counters
+    cell, steps, diagonal, terminated = np.int64(moves.start), 0, 0, False
+    path_hash = HASH_START
+    reading = _reading(sensor, book, generator, cell)
+    label = _label(sensor, book, counters, cell, reading)
+    run.visits[cell] += 1
+    while not terminated and steps < parameters.max_steps:
+        if rates[0] >= parameters.epsilon_min:
+            rates[0] *= parameters.step_decay
+        if rates[1] >= parameters.alpha_min:
+            rates[1] *= parameters.step_decay
+        choice = _greedy(moves, parameters, q, generator, label, cell)
+        bits = _draw(generator)
+        if unit_from_high_bits(bits) < rates[0] or choice < 0:
+            pick = index_from_low_bits(bits, np.uint64(moves.n_possible[cell]))
+            choice = np.int64(moves.possible[8 * cell + np.int64(pick)])
+        arrived = np.int64(moves.next_state[8 * cell + choice])
+        next_reading = _reading(sensor, book, generator, arrived)
+        terminated = next_reading > sensor.terminal_dbm
+        reward = 0.0 if terminated and sensor.goal_replaces else next_reading - reading
+        value = 0.0
+        next_label = _label(sensor, book, counters, arrived, next_reading)
+        if terminated:
+            reward += sensor.goal_reward
+        else:
+            value, _ = _best(moves, parameters.all_actions, q, next_label, arrived)
+        entry = 8 * label + choice
+        q[entry] = (1.0 - rates[1]) * q[entry] + rates[1] * (reward + parameters.gamma * value)
+        path_hash = extended_hash(path_hash, choice)
+        diagonal += choice & 1
+        steps += 1
+        run.visits[arrived] += 1
+        cell, label, reading = arrived, next_label, next_reading
+    return steps, diagonal, path_hash, terminated
+
+
+@njit(cache=True, nogil=True)
+def learn(moves, sensor, parameters, run, log, book, until_episode):
+    """Go on learning to ``until_episode``, or to the episode in which the run converges."""
+    while run.counters[EPISODE] < until_episode:
+        decay_before_episode(parameters, run.rates)
+        steps, diagonal, path_hash, terminated = _fly_episode(moves, sensor, parameters, run, book)
+        if record_episode(run, log, steps, diagonal, path_hash, terminated):
+            return
+
+
+@njit(cache=True, nogil=True)
+def steady_labels(sensor, book, labels):
+    """Label of every cell's reading without fluctuation; -1 where no known state fits."""
+    for cell in range(labels.size):
+        reading = sensor.rss_dbm[cell]
+        if sensor.kind == LISTED:
+            labels[cell] = sensor.listed[cell]
+        elif sensor.kind == INTERVALS:
+            labels[cell] = np.searchsorted(sensor.edges_dbm, reading, side="right")
+        else:
+            labels[cell] = _known_state(sensor, book, reading)

@@ -1,0 +1,208 @@
+"""One realisation of Q-learning: the loop's arrays and the two loops behind one interface."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.agents import Agent, DecisionProcess, LocationAgent, QLearning, RssAgent
+from rssnav.kernels import common, sensed, tabular
+from rssnav.kernels.common import Log, Moves, Parameters, Run
+from rssnav.states import ExactStates, GoalRule, SensedStates, sensed_states
+from rssnav.world import GridWorld
+
+N_ACTIONS = 8
+
+
+class Learner(Protocol):
+    """A Q-table that learns by flying episodes."""
+
+    run: Run
+
+    def advance(self, log: Log, until_episode: int) -> None:
+        """Fly to ``until_episode``, or to the episode in which the run converges."""
+        ...
+
+    def cell_values(self) -> NDArray[np.float64]:
+        """Q of each cell's steady reading, shape (S, 8); -inf where the step is impossible."""
+        ...
+
+    def n_labels(self) -> int:
+        """States the agent tells apart so far."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class LearningProblem:
+    """World, agent and parameters in the loops' terms; shared by all realisations.
+
+    Attributes
+    ----------
+    process : DecisionProcess
+        Rewards and terminal states for steady readings.
+    learning : QLearning
+        Parameters of Algorithm 1.
+    states : SensedStates or None
+        How readings become labels; None when every cell has its own row of Q.
+    """
+
+    process: DecisionProcess
+    learning: QLearning
+    states: SensedStates | None
+
+    @classmethod
+    def of(cls, world: GridWorld, agent: Agent, learning: QLearning) -> LearningProblem:
+        """Apply an agent to a world. Raises :class:`~rssnav.world.WorldError`."""
+        process = agent.decision_process(world, learning)
+        states = None
+        if isinstance(agent, RssAgent) and not _has_a_row_per_cell(agent, world):
+            goal = GoalRule(
+                agent.terminal_dbm, learning.goal_reward, learning.goal_reward_is == "instead"
+            )
+            states = sensed_states(agent.states, agent.fluctuation, world.rss_dbm, goal)
+        return cls(process, learning, states)
+
+    @property
+    def n_states(self) -> int:
+        """Number S of cells."""
+        return self.process.next_state.shape[0]
+
+    def learner(self, generator: NDArray[np.uint64]) -> Learner:
+        """Begin a realisation that draws from a xoshiro256++ state (4,)."""
+        if self.states is None:
+            return TabularLearner(self, generator)
+        return SensedLearner(self, self.states, generator)
+
+
+def _has_a_row_per_cell(agent: RssAgent, world: GridWorld) -> bool:
+    unique = np.unique(world.rss_dbm).size == world.n_states
+    return isinstance(agent.states, ExactStates) and unique
+
+
+def moves_of(process: DecisionProcess) -> Moves:
+    """Lay a decision process out for the loops."""
+    possible = process.next_state >= 0
+    # A stable sort brings the possible actions of each state to the front, in their order.
+    order = np.argsort(~possible, axis=1, kind="stable").astype(np.uint8)
+    return Moves(
+        next_state=process.next_state.reshape(-1),
+        possible=order.reshape(-1),
+        n_possible=possible.sum(axis=1).astype(np.uint8),
+        terminal=process.terminal,
+        start=process.start,
+    )
+
+
+def parameters_of(learning: QLearning) -> Parameters:
+    """Scalars of Algorithm 1 for the loops."""
+    factor = math.exp(-learning.eta)
+    return Parameters(
+        gamma=learning.gamma,
+        epsilon_min=learning.epsilon_min,
+        alpha_min=learning.alpha_min,
+        step_decay=factor if learning.decay == "step" else 1.0,
+        episode_decay=factor if learning.decay == "episode" else 1.0,
+        max_steps=learning.max_steps,
+        all_actions=learning.maximum_over == "all",
+        random_ties=learning.tie_break == "random",
+    )
+
+
+def _new_run(
+    problem: LearningProblem, q: NDArray[np.float64], generator: NDArray[np.uint64]
+) -> Run:
+    counters = np.zeros(common.N_COUNTERS, dtype=np.int64)
+    counters[common.CONVERGED_EPISODE] = counters[common.CONVERGED_STEPS] = -1
+    learning = problem.learning
+    return Run(
+        q=q.reshape(-1),
+        visits=np.zeros(problem.n_states, dtype=np.int32),
+        generator=generator.copy(),
+        rates=np.array([learning.epsilon_max, learning.alpha_max]),
+        counters=counters,
+        path_hash=np.zeros(1, dtype=np.uint64),
+    )
+
+
+class TabularLearner:
+    """One row of Q per cell. Blocked actions are -inf unless the maximum runs over all."""
+
+    def __init__(self, problem: LearningProblem, generator: NDArray[np.uint64]) -> None:
+        process, learning = problem.process, problem.learning
+        self._moves = moves_of(process)
+        self._parameters = parameters_of(learning)
+        self._reward = process.reward.reshape(-1)
+        self._blocked = process.next_state < 0
+        q = np.full((problem.n_states, N_ACTIONS), learning.initial_q)
+        if not self._parameters.all_actions:
+            q[self._blocked] = -np.inf
+        q[process.terminal] = 0.0
+        self.run = _new_run(problem, q, generator)
+        self._greedy = tabular.Greedy(
+            value=np.empty(problem.n_states), action=np.empty(problem.n_states, dtype=np.int8)
+        )
+        tabular.renew_greedy(self.run.q, self._moves.next_state, self._greedy)
+
+    def advance(self, log: Log, until_episode: int) -> None:
+        """Fly to ``until_episode``, or to the episode in which the run converges."""
+        tabular.learn(
+            self._moves, self._reward, self._parameters, self.run, log, self._greedy, until_episode
+        )
+
+    def cell_values(self) -> NDArray[np.float64]:
+        """Q of each cell, shape (S, 8); -inf where the step is impossible."""
+        return np.where(self._blocked, -np.inf, self.run.q.reshape(-1, N_ACTIONS))
+
+    def n_labels(self) -> int:
+        """States the agent tells apart: the cells."""
+        return self._blocked.shape[0]
+
+
+class SensedLearner:
+    """A row of Q per label, labels made from the readings."""
+
+    def __init__(
+        self, problem: LearningProblem, states: SensedStates, generator: NDArray[np.uint64]
+    ) -> None:
+        self._states = states
+        self._moves = moves_of(problem.process)
+        self._parameters = parameters_of(problem.learning)
+        self._blocked = problem.process.next_state < 0
+        self._initial_q = problem.learning.initial_q
+        self.run = _new_run(
+            problem, np.full((states.max_labels, N_ACTIONS), self._initial_q), generator
+        )
+        self.run.counters[common.N_ROWS] = states.n_listed
+        self._book = sensed.Book(
+            label_of_bin=np.full(states.n_bins, -1, dtype=np.int32),
+            value_dbm=np.zeros(states.max_labels),
+            fluctuation_db=np.zeros(1),
+        )
+
+    def advance(self, log: Log, until_episode: int) -> None:
+        """Fly to ``until_episode``, or to the episode in which the run converges."""
+        sensed.learn(
+            self._moves,
+            self._states.sensor,
+            self._parameters,
+            self.run,
+            log,
+            self._book,
+            until_episode,
+        )
+
+    def cell_values(self) -> NDArray[np.float64]:
+        """Q of each cell's steady reading, shape (S, 8); the initial Q where no state fits it."""
+        labels = np.empty(self._blocked.shape[0], dtype=np.int32)
+        sensed.steady_labels(self._states.sensor, self._book, labels)
+        q = self.run.q.reshape(-1, N_ACTIONS)[labels]
+        q = np.where((labels >= 0)[:, None], q, self._initial_q)
+        return np.where(self._blocked, -np.inf, q)
+
+    def n_labels(self) -> int:
+        """States the agent tells apart so far."""
+        return int(self.run.counters[common.N_ROWS])

@@ -1,0 +1,178 @@
+"""What an agent that knew everything would do: shortest paths and value iteration.
+
+These are the oracles that learning is judged by. Shortest paths come from Dijkstra's algorithm
+over the move graph, counting steps or metres; value iteration solves the same decision process
+the agents learn in, so its policy is what Q-learning would converge to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
+
+from rssnav.agents import DecisionProcess
+from rssnav.world import GridWorld
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """A flight from the start.
+
+    Attributes
+    ----------
+    states : (n + 1,) int32
+        States visited, the start first.
+    reached : bool
+        Whether it ends in a terminal state.
+    length_m : float
+        Its length [m].
+    """
+
+    states: NDArray[np.int32]
+    reached: bool
+    length_m: float
+
+    @property
+    def steps(self) -> int:
+        """Number n of steps."""
+        return self.states.size - 1
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Optimal values and policy of a decision process.
+
+    Attributes
+    ----------
+    q : (S, 8) float64
+        Optimal action values; -inf where the action is impossible, 0 in terminal states.
+    policy : (S,) int32
+        First action that attains the maximum.
+    sweeps : int
+        Sweeps that value iteration took.
+    """
+
+    q: NDArray[np.float64]
+    policy: NDArray[np.int32]
+    sweeps: int
+
+
+def path_length_m(world: GridWorld, states: NDArray[np.int32]) -> float:
+    """Length [m] of a flight through states (n + 1,)."""
+    steps = np.diff(world.position[states], axis=0)
+    return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
+
+
+def shortest_path(
+    world: GridWorld, terminal: NDArray[np.bool_], cost: Literal["steps", "metres"] = "steps"
+) -> Path:
+    """Shortest flight from the start to any terminal state.
+
+    Parameters
+    ----------
+    world : GridWorld
+        Gives the possible steps and their lengths.
+    terminal : (S,) bool
+        Where a flight may end.
+    cost : {"steps", "metres"}
+        What is minimised; the agents pay per step, straight or diagonal alike. Flights of equally
+        many steps are told apart by their length.
+
+    Raises
+    ------
+    ValueError
+        When no terminal state can be reached.
+    """
+    state, action = np.nonzero(world.next_state >= 0)
+    length_m = world.step_length_m[action]
+    # A thousandth of the relative length settles ties between flights of equally many steps as
+    # long as they have fewer than 1000 / sqrt(2) steps; world sizes are far below.
+    tie_m = length_m / (length_m.max() * 4.0 * world.n_states)
+    weight = length_m if cost == "metres" else 1.0 + tie_m
+    graph = csr_array(
+        (weight, (state, world.next_state[state, action])), shape=(world.n_states,) * 2
+    )
+    distance, previous = dijkstra(graph, indices=world.start_state, return_predecessors=True)
+    goals = np.flatnonzero(terminal)
+    if goals.size == 0 or not np.isfinite(distance[goals]).any():
+        raise ValueError("no terminal state can be reached from the start")
+    states = [int(goals[np.argmin(distance[goals])])]
+    while states[-1] != world.start_state:
+        states.append(int(previous[states[-1]]))
+    path = np.array(states[::-1], dtype=np.int32)
+    return Path(path, True, path_length_m(world, path))
+
+
+def value_iteration(
+    process: DecisionProcess, gamma: float, *, tolerance: float = 1e-10
+) -> Solution:
+    """Solve Q(s, a) = r(s, a) + gamma max_a' Q(s', a') over the possible actions.
+
+    Parameters
+    ----------
+    process : DecisionProcess
+        Made by an agent from a world.
+    gamma : float
+        Discount factor, below 1.
+    tolerance : float
+        Sweeps stop when no value is farther than this from its optimum.
+    """
+    if not 0.0 <= gamma < 1.0:
+        raise ValueError(f"gamma: {gamma!r} must lie in [0, 1) for value iteration to converge")
+    impossible = process.next_state < 0
+    value = np.zeros(process.terminal.size)
+    sweeps, change = 0, np.inf
+    while change * gamma > tolerance * (1.0 - gamma):
+        new = np.max(_backup(process, impossible, value, gamma), axis=1)
+        new[process.terminal] = 0.0
+        change = float(np.max(np.abs(new - value)))
+        value, sweeps = new, sweeps + 1
+    q = _backup(process, impossible, value, gamma)
+    q[process.terminal] = np.where(impossible[process.terminal], -np.inf, 0.0)
+    return Solution(q, np.argmax(q, axis=1).astype(np.int32), sweeps)
+
+
+def _backup(
+    process: DecisionProcess,
+    impossible: NDArray[np.bool_],
+    value: NDArray[np.float64],
+    gamma: float,
+) -> NDArray[np.float64]:
+    """One application of the Bellman operator, shape (S, 8)."""
+    q = process.reward + gamma * value[process.next_state]
+    return np.where(impossible, -np.inf, q)
+
+
+def greedy_path(world: GridWorld, process: DecisionProcess, q: NDArray[np.float64]) -> Path:
+    """Flight that takes the best action of each state until the goal or a state seen before.
+
+    Parameters
+    ----------
+    world : GridWorld
+        Gives the lengths.
+    process : DecisionProcess
+        Gives moves, start and goal.
+    q : (S, 8) float64
+        Action values, -inf where impossible; the first maximum is taken.
+    """
+    follows = process.next_state[np.arange(q.shape[0]), np.argmax(q, axis=1)].tolist()
+    states, seen = [process.start], {process.start}
+    while not process.terminal[states[-1]]:
+        states.append(follows[states[-1]])
+        if states[-1] in seen:
+            break
+        seen.add(states[-1])
+    path = np.array(states, dtype=np.int32)
+    return Path(path, bool(process.terminal[path[-1]]), path_length_m(world, path))
+
+
+def discounted_return(process: DecisionProcess, states: NDArray[np.int32], gamma: float) -> float:
+    """Return sum_t gamma^t r_t of a flight through states (n + 1,)."""
+    here, there = states[:-1], states[1:]
+    action = np.argmax(process.next_state[here] == there[:, None], axis=1)
+    return float(np.sum(gamma ** np.arange(here.size) * process.reward[here, action]))

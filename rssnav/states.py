@@ -1,0 +1,186 @@
+"""How an RSS reading becomes a state label, and how readings fluctuate.
+
+The paper uses one label per RSS value (its threshold Th = 0) in a static world, and describes two
+other rules, for readings that change from visit to visit and for few states. All three are here:
+:class:`ExactStates`, :class:`ToleranceStates`, :class:`IntervalStates`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.kernels.sensed import INTERVALS, LISTED, TOLERANCE, Sensor
+
+MIN_THRESHOLD_DB = 1e-3
+_FLUCTUATION_RANGE = 9.0  # standard deviations; Box-Muller from 53 bits ends at 8.6
+
+
+@dataclass(frozen=True)
+class ExactStates:
+    """One label per distinct RSS value (Th = 0). Cells that read the same share their label."""
+
+    def labels(self, rss_dbm: NDArray[np.float64]) -> NDArray[np.int32]:
+        """Label of each cell, shape (S,), in the order in which the values first appear."""
+        _, first, inverse = np.unique(rss_dbm, return_index=True, return_inverse=True)
+        rank = np.empty(first.size, dtype=np.int32)
+        rank[np.argsort(first)] = np.arange(first.size, dtype=np.int32)
+        return rank[inverse]
+
+
+@dataclass(frozen=True)
+class ToleranceStates:
+    """A reading within (s - Th, s + Th) of a known state s is that state, else it founds one.
+
+    A state keeps the reading that founded it. Where a reading fits two states it is the nearer
+    one, and of two as near the older one. Known states are therefore never closer than Th.
+
+    Parameters
+    ----------
+    threshold_db : float
+        Th [dB], at least 0.001; Th = 0 is :class:`ExactStates`.
+    """
+
+    threshold_db: float
+
+    def __post_init__(self) -> None:
+        if not MIN_THRESHOLD_DB <= self.threshold_db < math.inf:
+            raise ValueError(
+                f"threshold_db: {self.threshold_db!r} must be a number of at least "
+                f"{MIN_THRESHOLD_DB} dB; for Th = 0 use ExactStates()"
+            )
+
+
+@dataclass(frozen=True)
+class IntervalStates:
+    """A fixed set of RSS intervals: label k for edges[k-1] <= RSS < edges[k].
+
+    Readings below the first edge have label 0, readings from the last edge on label len(edges).
+
+    Parameters
+    ----------
+    edges_dbm : tuple of float
+        Where one interval ends and the next begins, strictly ascending [dBm].
+    """
+
+    edges_dbm: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        edges = np.array(self.edges_dbm, dtype=np.float64)
+        if edges.size == 0 or not np.all(np.isfinite(edges)):
+            raise ValueError(
+                f"edges_dbm: {self.edges_dbm!r} must hold at least one edge, all of them finite"
+            )
+        if np.any(np.diff(edges) <= 0.0):
+            k = int(np.argmax(np.diff(edges) <= 0.0))
+            raise ValueError(
+                f"edges_dbm: the intervals overlap, edge {k + 1} ({edges[k + 1]:g} dBm) is not "
+                f"above edge {k} ({edges[k]:g} dBm); give the edges in strictly ascending order"
+            )
+
+    @classmethod
+    def uniform(cls, low_dbm: float, high_dbm: float, width_db: float) -> IntervalStates:
+        """Intervals of equal width from ``low_dbm`` up to ``high_dbm`` or just above."""
+        if not (width_db > 0.0 and high_dbm > low_dbm):
+            raise ValueError(
+                f"intervals of {width_db!r} dB from {low_dbm!r} to {high_dbm!r} dBm: the width "
+                "must be positive and the upper end above the lower"
+            )
+        count = math.ceil((high_dbm - low_dbm) / width_db) + 1
+        return cls(tuple(low_dbm + width_db * k for k in range(count)))
+
+
+StateRule = ExactStates | ToleranceStates | IntervalStates
+
+
+@dataclass(frozen=True)
+class Fluctuation:
+    """Gaussian fluctuation of the readings in dB, correlated from one reading to the next.
+
+    Parameters
+    ----------
+    sigma_db : float
+        Standard deviation [dB]; 0 makes the readings the map's values.
+    correlation : float
+        Correlation of successive readings' fluctuations, in [0, 1).
+    """
+
+    sigma_db: float = 0.0
+    correlation: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.sigma_db < math.inf:
+            raise ValueError(
+                f"sigma_db: {self.sigma_db!r} must be a finite number of dB, 0 or more"
+            )
+        if not 0.0 <= self.correlation < 1.0:
+            raise ValueError(f"correlation: {self.correlation!r} must lie in [0, 1)")
+
+
+@dataclass(frozen=True)
+class GoalRule:
+    """When an RSS episode ends, and what that is worth."""
+
+    terminal_dbm: float
+    reward: float
+    replaces: bool
+
+
+@dataclass(frozen=True, eq=False)
+class SensedStates:
+    """A state rule applied to the cells of a world, ready for the loop.
+
+    Attributes
+    ----------
+    sensor : Sensor
+        The loop's view of readings and labels.
+    n_bins : int
+        Bins of the tolerance states' table (0 for the other rules).
+    max_labels : int
+        Most labels that can come to exist, and so the rows a Q-table needs.
+    n_listed : int
+        Labels that exist from the start (0 for tolerance states).
+    """
+
+    sensor: Sensor
+    n_bins: int
+    max_labels: int
+    n_listed: int
+
+
+def sensed_states(
+    rule: StateRule, fluctuation: Fluctuation, rss_dbm: NDArray[np.float64], goal: GoalRule
+) -> SensedStates:
+    """Apply a state rule to the RSS (S,) [dBm] of a world's cells."""
+    margin = _FLUCTUATION_RANGE * fluctuation.sigma_db
+    low_dbm, high_dbm = float(rss_dbm.min()) - margin, float(rss_dbm.max()) + margin
+    kind, listed, edges = LISTED, np.empty(0, dtype=np.int32), np.empty(0)
+    threshold, n_bins = 0.0, 0
+    if isinstance(rule, ExactStates):
+        listed = rule.labels(rss_dbm)
+        n_listed = max_labels = int(listed.max()) + 1
+    elif isinstance(rule, IntervalStates):
+        kind, edges = INTERVALS, np.array(rule.edges_dbm)
+        n_listed = max_labels = edges.size + 1
+    else:
+        kind, threshold = TOLERANCE, rule.threshold_db
+        n_bins = int((high_dbm - low_dbm) * 2.0 / threshold) + 1
+        max_labels = n_bins if fluctuation.sigma_db > 0.0 else min(n_bins, rss_dbm.size)
+        n_listed = 0
+    sensor = Sensor(
+        rss_dbm=rss_dbm,
+        kind=kind,
+        listed=listed,
+        edges_dbm=edges,
+        threshold_db=threshold,
+        low_dbm=low_dbm,
+        sigma_db=fluctuation.sigma_db,
+        correlation=fluctuation.correlation,
+        terminal_dbm=goal.terminal_dbm,
+        goal_reward=goal.reward,
+        goal_replaces=goal.replaces,
+    )
+    return SensedStates(sensor, n_bins, max_labels, n_listed)

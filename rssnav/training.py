@@ -1,0 +1,314 @@
+"""Training: many independent realisations of Q-learning on all cores.
+
+Realisation ``k`` of seed ``s`` draws from its own xoshiro256++ stream, seeded by
+``numpy.random.SeedSequence(s, spawn_key=(k,))``, and shares nothing it writes with another. So a
+result does not depend on the number of threads, and any realisation can be repeated alone.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from threading import Event
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.agents import Agent, QLearning
+from rssnav.kernels import common
+from rssnav.kernels.common import Log
+from rssnav.learners import LearningProblem
+from rssnav.planning import Path, greedy_path
+from rssnav.results import Schedule, TrainingResult, padded
+from rssnav.world import GridWorld
+
+Progress = Callable[[int, int], None]
+
+_CHUNK_EPISODES = 64  # between two looks at an interrupt
+
+
+class TrainingInterrupted(KeyboardInterrupt):  # noqa: N818 (it is no error)
+    """Ctrl-C during training; ``result`` holds the finished realisations (None without any).
+
+    Save it, and pass it to :func:`train` as ``resume`` to train the missing ones.
+    """
+
+    def __init__(self, result: TrainingResult | None) -> None:
+        done = 0 if result is None else result.run_ids.size
+        super().__init__(f"training was interrupted with {done} finished realisations")
+        self.result = result
+
+
+@dataclass(frozen=True, eq=False)
+class _Realisation:
+    """One finished run."""
+
+    run_id: int
+    log: Log  # trimmed to the episodes flown
+    counters: NDArray[np.int64]
+    converged_cpu_s: float
+    cpu_s: float
+    path: Path
+    n_labels: int
+    q: NDArray[np.float64] | None
+
+
+def train(
+    world: GridWorld,
+    agent: Agent,
+    *,
+    runs: int = 100,
+    episodes: int = 1000,
+    seed: int = 0,
+    learning: QLearning | None = None,
+    until_converged: bool = False,
+    min_episodes: int = 1000,
+    snapshot_episodes: Sequence[int] = (200, 500, 1000),
+    keep_q: bool = False,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    only_runs: Sequence[int] | None = None,
+    resume: TrainingResult | None = None,
+) -> TrainingResult:
+    """Train an agent in a world, many times over.
+
+    Parameters
+    ----------
+    world : GridWorld
+        Where it flies.
+    agent : RssAgent or LocationAgent
+        What is state, reward and goal.
+    runs : int
+        Realisations.
+    episodes : int
+        Episodes of each; with ``until_converged`` the most it may take.
+    seed : int
+        Same seed, same result, for any number of threads.
+    learning : QLearning, optional
+        Parameters of Algorithm 1.
+    until_converged : bool
+        Stop a run once it flies the same path in three consecutive episodes, yet not before
+        ``min_episodes``. One such training serves the figures over the first ``min_episodes``
+        episodes and the convergence figure alike.
+    min_episodes : int
+        Episodes a run flies even when it converges earlier.
+    snapshot_episodes : sequence of int
+        Episodes after which visit counts are kept; those that not every run is sure to fly are
+        left out.
+    keep_q : bool
+        Keep the final Q-tables.
+    threads : int, optional
+        Threads that realisations are spread over; all cores by default.
+    progress : callable, optional
+        Called as ``progress(done, runs)`` whenever realisations finish.
+    only_runs : sequence of int, optional
+        Train only these of the realisations 0..runs-1; each is the same as in the whole.
+    resume : TrainingResult, optional
+        Finished realisations of the same training, which are not trained again.
+
+    Returns
+    -------
+    TrainingResult
+
+    Raises
+    ------
+    ValueError
+        For a parameter out of range, or a ``resume`` of another training.
+    WorldError
+        When the agent cannot learn in this world.
+    TrainingInterrupted
+        On Ctrl-C, with the finished realisations.
+    """
+    learning = QLearning() if learning is None else learning
+    schedule = _schedule(runs, episodes, seed, until_converged, min_episodes, snapshot_episodes)
+    run_ids = _wanted_runs(runs, only_runs)
+    realiser = _Realiser(
+        world, LearningProblem.of(world, agent, learning), schedule, Event(), keep_q
+    )
+    if resume is not None:
+        resume.check_same_training(world, agent, learning, schedule)
+        run_ids = [k for k in run_ids if k not in resume.run_ids]
+    realisations, interrupted = _on_threads(realiser, run_ids, _n_threads(threads), progress)
+    result = resume
+    if realisations:
+        trained = _collect(world, agent, learning, schedule, realisations)
+        result = trained if resume is None else resume.merged(trained)
+    if interrupted or result is None:
+        raise TrainingInterrupted(result)
+    return result
+
+
+def _schedule(
+    runs: int,
+    episodes: int,
+    seed: int,
+    until_converged: bool,
+    min_episodes: int,
+    snapshot_episodes: Sequence[int],
+) -> Schedule:
+    for name, value, least in (
+        ("runs", runs, 1),
+        ("episodes", episodes, 1),
+        ("min_episodes", min_episodes, 1),
+        ("seed", seed, 0),
+    ):
+        if isinstance(value, bool) or int(value) != value or value < least:
+            raise ValueError(f"{name}: {value!r} must be a whole number of at least {least}")
+    guaranteed = min(episodes, min_episodes) if until_converged else episodes
+    snapshots = tuple(sorted({int(k) for k in snapshot_episodes if k <= guaranteed}))
+    if snapshots and snapshots[0] < 1:
+        raise ValueError(f"snapshot_episodes: {snapshots[0]} must be at least 1")
+    return Schedule(
+        int(runs), int(episodes), int(seed), until_converged, int(min_episodes), snapshots
+    )
+
+
+def _wanted_runs(runs: int, only_runs: Sequence[int] | None) -> list[int]:
+    if only_runs is None:
+        return list(range(runs))
+    wanted = sorted({int(k) for k in only_runs})
+    if not wanted or wanted[0] < 0 or wanted[-1] >= runs:
+        raise ValueError(f"only_runs: {only_runs!r} must name some of the runs 0 to {runs - 1}")
+    return wanted
+
+
+def _n_threads(threads: int | None) -> int:
+    if threads is None:
+        return (
+            len(os.sched_getaffinity(0))
+            if hasattr(os, "sched_getaffinity")
+            else os.cpu_count() or 1
+        )
+    if threads < 1:
+        raise ValueError(f"threads: {threads!r} must be at least 1")
+    return threads
+
+
+def generator_state(seed: int, run: int) -> NDArray[np.uint64]:
+    """xoshiro256++ state (4,) that realisation ``run`` of a seed starts from."""
+    return np.random.SeedSequence(seed, spawn_key=(run,)).generate_state(4, np.uint64)
+
+
+@dataclass(frozen=True, eq=False)
+class _Realiser:
+    """Trains one realisation; called on many threads at once."""
+
+    world: GridWorld
+    problem: LearningProblem
+    schedule: Schedule
+    stop: Event
+    keep_q: bool
+
+    def __call__(self, run_id: int) -> _Realisation | None:
+        """Train a realisation; None when told to stop on the way."""
+        learner = self.problem.learner(generator_state(self.schedule.seed, run_id))
+        log = self._new_log()
+        counters = learner.run.counters
+        begin_s = time.thread_time()
+        converged_s = 0.0
+        while counters[common.EPISODE] < (limit := self._limit(counters)):
+            if self.stop.is_set():
+                return None
+            undecided = counters[common.CONVERGED_EPISODE] < 0
+            learner.advance(log, min(limit, int(counters[common.EPISODE]) + _CHUNK_EPISODES))
+            if undecided:
+                converged_s = time.thread_time() - begin_s
+        cpu_s = time.thread_time() - begin_s
+        q = learner.cell_values()
+        return _Realisation(
+            run_id=run_id,
+            log=_trimmed(log, int(counters[common.EPISODE])),
+            counters=counters,
+            converged_cpu_s=converged_s,
+            cpu_s=cpu_s,
+            path=greedy_path(self.world, self.problem.process, q),
+            n_labels=learner.n_labels(),
+            q=q if self.keep_q else None,
+        )
+
+    def _limit(self, counters: NDArray[np.int64]) -> int:
+        """Episode at which the run ends, as far as is known by now."""
+        if self.schedule.until_converged and counters[common.CONVERGED_EPISODE] >= 0:
+            return self.schedule.guaranteed_episodes
+        return self.schedule.episodes
+
+    def _new_log(self) -> Log:
+        episodes, snapshots = self.schedule.episodes, self.schedule.snapshot_episodes
+        return Log(
+            steps=np.empty(episodes, dtype=np.int32),
+            diagonal_steps=np.empty(episodes, dtype=np.int32),
+            truncated=np.empty(episodes, dtype=np.bool_),
+            snapshots=np.zeros((len(snapshots), self.problem.n_states), dtype=np.int32),
+            snapshot_episodes=np.array(snapshots, dtype=np.int64),
+        )
+
+
+def _trimmed(log: Log, episodes: int) -> Log:
+    """A log's first episodes, without the memory of those that were not flown."""
+    return log._replace(
+        steps=log.steps[:episodes].copy(),
+        diagonal_steps=log.diagonal_steps[:episodes].copy(),
+        truncated=log.truncated[:episodes].copy(),
+    )
+
+
+def _on_threads(
+    realiser: _Realiser, run_ids: Sequence[int], threads: int, progress: Progress | None
+) -> tuple[list[_Realisation], bool]:
+    """Train realisations on a pool. Returns the finished ones, and whether Ctrl-C cut it short."""
+    interrupted = False
+    before = realiser.schedule.runs - len(run_ids)
+    with ThreadPoolExecutor(threads) as pool:
+        futures = [pool.submit(realiser, run_id) for run_id in run_ids]
+        try:
+            for done, future in enumerate(as_completed(futures), start=1):
+                future.result()
+                if progress is not None:
+                    progress(before + done, realiser.schedule.runs)
+        except KeyboardInterrupt:
+            interrupted = True
+        finally:
+            realiser.stop.set()
+            pool.shutdown(cancel_futures=True)
+    results = [future.result() for future in futures if not future.cancelled()]
+    return [result for result in results if result is not None], interrupted
+
+
+def _collect(
+    world: GridWorld,
+    agent: Agent,
+    learning: QLearning,
+    schedule: Schedule,
+    realisations: Sequence[_Realisation],
+) -> TrainingResult:
+    """Put finished realisations together, in the order of their numbers."""
+    ordered = sorted(realisations, key=lambda realisation: realisation.run_id)
+    counters = np.array([r.counters for r in ordered])
+    visit_counts = np.zeros((len(schedule.snapshot_episodes), world.n_states), dtype=np.int64)
+    for realisation in ordered:
+        visit_counts += realisation.log.snapshots
+    return TrainingResult(
+        world=world,
+        agent=agent,
+        learning=learning,
+        schedule=schedule,
+        run_ids=np.array([r.run_id for r in ordered], dtype=np.int64),
+        steps=padded([r.log.steps for r in ordered], -1),
+        diagonal_steps=padded([r.log.diagonal_steps for r in ordered], -1),
+        truncated=padded([r.log.truncated for r in ordered], False),
+        episodes_flown=counters[:, common.EPISODE],
+        visit_counts=visit_counts,
+        converged_episode=counters[:, common.CONVERGED_EPISODE],
+        converged_steps=counters[:, common.CONVERGED_STEPS],
+        converged_cpu_s=np.array([r.converged_cpu_s for r in ordered]),
+        cpu_s=np.array([r.cpu_s for r in ordered]),
+        trajectories=padded([r.path.states for r in ordered], -1),
+        reached=np.array([r.path.reached for r in ordered]),
+        path_steps=np.array([r.path.steps for r in ordered], dtype=np.int64),
+        path_length_m=np.array([r.path.length_m for r in ordered]),
+        n_labels=np.array([r.n_labels for r in ordered], dtype=np.int64),
+        q=np.stack([r.q for r in ordered if r.q is not None]) if ordered[0].q is not None else None,
+    )
