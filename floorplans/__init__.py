@@ -1,1 +1,39 @@
-"""Placeholder docstring, replaced below."""
+"""Floor plans: read them from TOML, check them, draw them, and turn them into wall meshes.
+
+>>> import floorplans
+>>> plan = floorplans.load("flat")
+>>> plan.bounds
+(0.0, 0.0, 12.0, 9.0)
+
+A `FloorPlan` is one storey: straight walls with openings, flat floor and ceiling, a material each,
+the radio source and the start of a search. `FloorPlan.to_mesh` makes it a `trimesh` of sheets with
+a material a face, `FloorPlan.solid_segments` tells where it is solid at a height, and
+`floorplans.drawing` draws it. Lengths are in metres, z is the height above the floor.
+"""
+
+from floorplans.errors import PlanError
+from floorplans.materials import MATERIAL_COLOURS, MATERIALS
+from floorplans.mesh import SheetMaterial, WallMesh
+from floorplans.plan import FloorPlan
+from floorplans.toml_format import builtin_names, load, loads, save
+from floorplans.toml_writer import dumps
+from floorplans.walls import Opening, OpeningKind, Panel, Wall, panels
+
+__all__ = [
+    "MATERIALS",
+    "MATERIAL_COLOURS",
+    "FloorPlan",
+    "Opening",
+    "OpeningKind",
+    "Panel",
+    "PlanError",
+    "SheetMaterial",
+    "Wall",
+    "WallMesh",
+    "builtin_names",
+    "dumps",
+    "load",
+    "loads",
+    "panels",
+    "save",
+]

@@ -1,0 +1,163 @@
+"""Checks of a whole plan; the first problem found raises `PlanError`."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING
+
+import shapely
+from shapely.geometry import LineString, MultiLineString, Point, Polygon
+from shapely.geometry.base import BaseGeometry
+from shapely.strtree import STRtree
+
+from floorplans.errors import Place, PlanError
+from floorplans.wall_checks import check_material, check_positive, check_wall
+from floorplans.walls import TOLERANCE_M, Wall, closed_intervals
+
+if TYPE_CHECKING:
+    from floorplans.plan import FloorPlan
+
+
+def check_plan(plan: FloorPlan) -> None:
+    """Raise `PlanError` unless the plan describes a closed storey a search can be run in."""
+    _check_name(plan.name)
+    _check_slabs(plan)
+    _check_outline(plan.outline)
+    for index, wall in enumerate(plan.walls):
+        check_wall(wall, plan.height_m, ("walls", index))
+    _check_walls_inside(plan)
+    _check_no_double_walls(plan.walls)
+    _check_enclosure(plan)
+    _check_source(plan)
+    _check_start(plan)
+
+
+def _check_name(name: str) -> None:
+    if not (name and name.isprintable()):
+        raise PlanError("expected one line of printable text", ("name",), name)
+
+
+def _check_slabs(plan: FloorPlan) -> None:
+    check_positive(plan.height_m, ("height_m",))
+    check_material(plan.floor_material, ("floor_material",))
+    check_material(plan.ceiling_material, ("ceiling_material",))
+    check_positive(plan.floor_thickness_m, ("floor_thickness_m",))
+    check_positive(plan.ceiling_thickness_m, ("ceiling_thickness_m",))
+
+
+def _check_outline(outline: Polygon) -> None:
+    place: Place = ("outline",)
+    if outline.has_z:
+        raise PlanError("the outline has heights; give points (x, y)", place)
+    if not all(isfinite(number) for number in shapely.get_coordinates(outline).flat):
+        raise PlanError("expected finite numbers [m]", place)
+    if not outline.is_valid:
+        reason = shapely.is_valid_reason(outline)
+        raise PlanError(
+            f"the ring is not a simple polygon: {reason}; no edge may cross or repeat another",
+            place,
+        )
+    if not outline.area > 0:
+        raise PlanError("the outline has no area; give at least three corners", place)
+
+
+def _check_walls_inside(plan: FloorPlan) -> None:
+    room = plan.outline.buffer(TOLERANCE_M)
+    shapely.prepare(room)
+    for index, wall in enumerate(plan.walls):
+        line = LineString([wall.start, wall.end])
+        if not room.covers(line):
+            where = _stretch(line.difference(room))
+            raise PlanError(
+                f"the wall leaves the outline from {where}; shorten it or widen the outline",
+                ("walls", index),
+            )
+
+
+def _check_no_double_walls(walls: tuple[Wall, ...]) -> None:
+    lines = [LineString([wall.start, wall.end]) for wall in walls]
+    for first, second in STRtree(lines).query(lines, predicate="intersects").T:
+        if first < second:
+            shared = lines[first].intersection(lines[second])
+            if shared.length > TOLERANCE_M:
+                raise PlanError(
+                    f"the wall runs along another wall from {_stretch(shared)}; "
+                    "one wall is one sheet: remove the stretch from one of them",
+                    ("walls", int(second)),
+                )
+
+
+def _check_enclosure(plan: FloorPlan) -> None:
+    """Raise unless walls without unfilled openings, floor to ceiling, cover the outline's edge."""
+    closed = [
+        LineString([wall.point_at(low), wall.point_at(high)])
+        for wall in plan.walls
+        if wall.height_m > plan.height_m - TOLERANCE_M
+        for low, high in closed_intervals(wall)
+    ]
+    cover = shapely.union_all(closed).buffer(2 * TOLERANCE_M)
+    for ring in (plan.outline.exterior, *plan.outline.interiors):
+        gaps = _lines(ring.difference(cover))
+        for gap in gaps:
+            if gap.length > 10 * TOLERANCE_M:
+                raise PlanError(
+                    f"the outline is open from {_stretch(gap)}; put a wall from floor to ceiling "
+                    "there, and give a door or window in it a material",
+                    ("outline",),
+                )
+
+
+def _check_source(plan: FloorPlan) -> None:
+    place: Place = ("source",)
+    x, y, z = plan.source
+    if not 0 < z < plan.height_m:
+        raise PlanError(
+            f"the source is not between floor and ceiling; expected a height above 0 and below "
+            f"{plan.height_m:g} [m]",
+            place,
+            plan.source,
+        )
+    _check_inside(plan, (x, y), "source", plan.source)
+    if _in_wall(plan, (x, y), z):
+        raise PlanError("the source is in a wall; move it into a room", place, plan.source)
+
+
+def _check_start(plan: FloorPlan) -> None:
+    """Raise for a start outside, or with a wall at every height; it may stand in a doorway."""
+    _check_inside(plan, plan.start, "start", plan.start)
+    if all(_in_wall(plan, plan.start, height_m) for height_m in plan.layer_heights()):
+        raise PlanError("the start is in a wall; move it into a room", ("start",), plan.start)
+
+
+def _check_inside(plan: FloorPlan, point: tuple[float, float], key: str, value: object) -> None:
+    if not plan.outline.covers(Point(point)):
+        x_min, y_min, x_max, y_max = plan.bounds
+        raise PlanError(
+            f"the {key} is outside the outline, which reaches from ({x_min:g}, {y_min:g}) to "
+            f"({x_max:g}, {y_max:g}); move it into a room",
+            (key,),
+            value,
+        )
+
+
+def _in_wall(plan: FloorPlan, point: tuple[float, float], height_m: float) -> bool:
+    walls = MultiLineString(list(plan.solid_segments(height_m)))
+    return Point(point).distance(walls) < TOLERANCE_M
+
+
+def _lines(geometry: BaseGeometry) -> list[LineString]:
+    """Straight or bent lines of a geometry, joined where one goes on from another."""
+    merged = shapely.line_merge(geometry)
+    parts = shapely.get_parts(merged)
+    return [part for part in parts if isinstance(part, LineString) and not part.is_empty]
+
+
+def _stretch(geometry: BaseGeometry) -> str:
+    """Say "(x, y) to (x, y)" of the longest line of a geometry, rounded to 0.1 mm."""
+    longest = max(_lines(geometry), key=lambda line: line.length)
+    first, last = longest.coords[0], longest.coords[-1]
+    return " to ".join(f"({_tidy(x)}, {_tidy(y)})" for x, y in (first, last))
+
+
+def _tidy(number: float) -> str:
+    return f"{round(number, 4) + 0.0:g}"

@@ -1,0 +1,60 @@
+"""The one error this package raises for a plan that cannot be used."""
+
+import json
+from difflib import get_close_matches
+
+Place = tuple[str | int, ...]
+"""Keys and indices that lead to a value: ("walls", 3, "openings", 0) is walls[3].openings[0]."""
+
+
+class PlanError(ValueError):
+    """A floor plan is wrong; the message names the file, the table, the key, the value, the remedy.
+
+    Parameters
+    ----------
+    problem : str
+        What is wrong and what would be right.
+    place : Place
+        Where in the plan; empty for the plan as a whole.
+    value : object
+        The offending value, None if there is none to show.
+    origin : str
+        The file or the text the plan came from.
+    """
+
+    def __init__(
+        self, problem: str, place: Place = (), value: object = None, origin: str = ""
+    ) -> None:
+        self.problem = problem
+        self.place = place
+        self.value = value
+        self.origin = origin
+        where = format_place(place)
+        if value is not None:
+            where = f"{where} = {_format_value(value)}"
+        super().__init__(": ".join(part for part in (origin, where, problem) if part))
+
+
+def format_place(place: Place) -> str:
+    """Write a place the way TOML users do: ``walls[3].openings[0].width_m``."""
+    text = ""
+    for step in place:
+        text += f"[{step}]" if isinstance(step, int) else f".{step}" if text else step
+    return text
+
+
+def unknown_name(kind: str, name: str, known: tuple[str, ...]) -> str:
+    """Say that a name is unknown, which known name is near it, and list the known ones.
+
+    Examples
+    --------
+    >>> unknown_name("material", "glas", ("glass", "wood"))
+    'unknown material; did you mean "glass"? Known: glass, wood'
+    """
+    near = get_close_matches(name, known, n=1)
+    hint = f'; did you mean "{near[0]}"?' if near else "."
+    return f"unknown {kind}{hint} Known: {', '.join(known)}"
+
+
+def _format_value(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False, default=str)

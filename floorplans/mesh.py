@@ -1,0 +1,120 @@
+"""A plan as a mesh of sheets, a material a face.
+
+One wall is one double-sided sheet on its centre line; its thickness is in its material. A pair of
+faces a wall's thickness apart would hold rays between them. Sheets are cut around openings, and
+no two triangles share a vertex, so that a vertex has one colour and one normal in every format.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import shapely
+import trimesh
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from floorplans.materials import MATERIAL_COLOURS
+from floorplans.walls import Panel, Wall, panels
+
+if TYPE_CHECKING:
+    from floorplans.plan import FloorPlan
+
+Triangles = NDArray[np.float64]
+"""(n, 3, 3): triangle, corner, (x, y, z) [m]."""
+
+
+class SheetMaterial(NamedTuple):
+    """What a sheet is made of: the material's name and its thickness [m]."""
+
+    name: str
+    thickness_m: float
+
+
+@dataclass(frozen=True)
+class WallMesh:
+    """The sheets of a storey.
+
+    Attributes
+    ----------
+    mesh : trimesh.Trimesh
+        Walls in the plan's order, then floor and ceiling; coordinates in metres, z up. Floor and
+        ceiling face the room; which side of a wall is its front has no meaning.
+    face_material : (n_faces,) int64
+        Index into `materials`.
+    materials : tuple of SheetMaterial
+        All different ones, in order of first use.
+    """
+
+    mesh: trimesh.Trimesh
+    face_material: NDArray[np.int64]
+    materials: tuple[SheetMaterial, ...]
+
+
+def build_mesh(plan: FloorPlan) -> WallMesh:
+    """Build the sheets of a plan's walls, floor and ceiling.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+
+    Returns
+    -------
+    WallMesh
+    """
+    sheets = list(_sheets(plan))
+    materials = tuple(dict.fromkeys(material for material, _ in sheets))
+    indices = np.array([materials.index(material) for material, _ in sheets], dtype=np.int64)
+    face_material = np.repeat(indices, [len(triangles) for _, triangles in sheets])
+    vertices = np.concatenate([triangles for _, triangles in sheets]).reshape(-1, 3)
+    mesh = trimesh.Trimesh(
+        vertices=vertices,
+        faces=np.arange(len(vertices)).reshape(-1, 3),
+        face_colors=_colours(materials)[face_material],
+        process=False,
+    )
+    return WallMesh(mesh, face_material, materials)
+
+
+def _sheets(plan: FloorPlan) -> Iterator[tuple[SheetMaterial, Triangles]]:
+    for wall in plan.walls:
+        for panel in panels(wall):
+            yield SheetMaterial(panel.material, panel.thickness_m), _panel_triangles(wall, panel)
+    floor = _slab_triangles(plan.outline, 0.0)
+    yield SheetMaterial(plan.floor_material, plan.floor_thickness_m), floor
+    ceiling = _slab_triangles(plan.outline, plan.height_m)[:, ::-1]
+    yield SheetMaterial(plan.ceiling_material, plan.ceiling_thickness_m), ceiling
+
+
+def panel_corners(wall: Wall, panel: Panel) -> NDArray[np.float64]:
+    """Corners of a wall's panel, in turn from its lower corner nearest to the wall's start.
+
+    Returns
+    -------
+    (4, 3) float64
+        (x, y, z) [m].
+    """
+    near, far = wall.point_at(panel.s_min), wall.point_at(panel.s_max)
+    return np.array(
+        [(*near, panel.z_min), (*far, panel.z_min), (*far, panel.z_max), (*near, panel.z_max)]
+    )
+
+
+def _panel_triangles(wall: Wall, panel: Panel) -> Triangles:
+    return panel_corners(wall, panel)[[[0, 1, 2], [0, 2, 3]]]
+
+
+def _slab_triangles(outline: Polygon, z: float) -> Triangles:
+    """Triangles of a flat slab that face upwards; only the outline's own corners are used."""
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(outline))
+    rings = [shapely.get_coordinates(shapely.orient_polygons(part))[:3] for part in parts]
+    plan_view = np.stack(rings)
+    return np.concatenate([plan_view, np.full((*plan_view.shape[:2], 1), z)], axis=2)
+
+
+def _colours(materials: tuple[SheetMaterial, ...]) -> NDArray[np.uint8]:
+    colours = [bytes.fromhex(MATERIAL_COLOURS[material.name][1:]) for material in materials]
+    return np.array([(*colour, 255) for colour in colours], dtype=np.uint8)

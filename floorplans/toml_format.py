@@ -1,0 +1,219 @@
+"""TOML <-> FloorPlan: the file format that docs/plan_format.md describes."""
+
+import tomllib
+from importlib import resources
+from itertools import accumulate, pairwise
+from math import dist
+from pathlib import Path
+
+from shapely.geometry import Polygon
+
+from floorplans.errors import Place, PlanError, format_place
+from floorplans.plan import FloorPlan
+from floorplans.toml_table import Table, as_points
+from floorplans.toml_writer import FORMAT_VERSION, dumps
+from floorplans.wall_checks import check_openings, opening_kind
+from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
+
+PLAN_KEYS = (
+    "name", "format", "height_m", "floor_material", "floor_thickness_m", "ceiling_material",
+    "ceiling_thickness_m", "source", "start", "outline", "holes", "defaults", "walls",
+)  # fmt: skip
+DEFAULTS_KEYS = ("material", "thickness_m")
+WALL_KEYS = ("points", "material", "thickness_m", "height_m", "openings")
+OPENING_KEYS = ("kind", "offset_m", "width_m", "sill_m", "head_m", "material", "thickness_m")
+
+Corners = list[tuple[float, float]]
+
+
+def builtin_names() -> tuple[str, ...]:
+    """Names of the plans that come with the package, sorted."""
+    files = (resources.files("floorplans") / "plans").iterdir()
+    return tuple(sorted(f.name.removesuffix(".toml") for f in files if f.name.endswith(".toml")))
+
+
+def load(plan: str | Path) -> FloorPlan:
+    """Read a plan.
+
+    Parameters
+    ----------
+    plan : str or Path
+        A built-in name (`builtin_names`) or the path of a TOML file.
+
+    Returns
+    -------
+    FloorPlan
+
+    Raises
+    ------
+    PlanError
+        When there is no such plan, or it is wrong.
+    """
+    if plan in builtin_names():
+        file = resources.files("floorplans") / "plans" / f"{plan}.toml"
+        return loads(file.read_text(encoding="utf-8"), origin=file.name)
+    try:
+        text = Path(plan).read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise PlanError(f"not UTF-8 text: {error.reason}", origin=str(plan)) from error
+    except OSError as error:
+        raise PlanError(
+            f"the file cannot be read: {error.strerror}; give the path of a TOML file or one of "
+            f"the built-in plans {', '.join(builtin_names())}",
+            origin=str(plan),
+        ) from error
+    return loads(text, origin=str(plan))
+
+
+def loads(text: str, *, origin: str = "<text>") -> FloorPlan:
+    """Read a plan from TOML text.
+
+    Parameters
+    ----------
+    text : str
+    origin : str
+        What messages call the text, such as the name of its file.
+
+    Returns
+    -------
+    FloorPlan
+
+    Raises
+    ------
+    PlanError
+        When the text is not TOML, or the plan is wrong.
+    """
+    try:
+        return _read_plan(Table(tomllib.loads(text), PLAN_KEYS))
+    except tomllib.TOMLDecodeError as error:
+        raise PlanError(f"not valid TOML: {error}", origin=origin) from error
+    except PlanError as error:
+        raise PlanError(error.problem, error.place, error.value, origin) from None
+
+
+def save(plan: FloorPlan, path: str | Path) -> None:
+    """Write a plan to a TOML file."""
+    Path(path).write_text(dumps(plan), encoding="utf-8", newline="\n")
+
+
+def _read_plan(table: Table) -> FloorPlan:
+    _check_version(table)
+    height_m = table.number("height_m")
+    defaults = table.table("defaults", DEFAULTS_KEYS)
+    pieces = [_read_wall(wall, defaults, height_m) for wall in table.tables("walls", WALL_KEYS)]
+    x, y, z = table.coordinates("source", "xyz")
+    start_x, start_y = table.coordinates("start", "xy")
+    try:
+        return FloorPlan(
+            name=table.text("name"),
+            outline=_read_outline(table),
+            walls=tuple(wall for walls in pieces for wall in walls),
+            height_m=height_m,
+            floor_material=table.text("floor_material"),
+            ceiling_material=table.text("ceiling_material"),
+            source=(x, y, z),
+            start=(start_x, start_y),
+            floor_thickness_m=table.number("floor_thickness_m", 0.2),
+            ceiling_thickness_m=table.number("ceiling_thickness_m", 0.2),
+        )
+    except PlanError as error:
+        place = _place_in_file(error.place, [len(walls) for walls in pieces])
+        raise PlanError(error.problem, place, error.value) from None
+
+
+def _check_version(table: Table) -> None:
+    version = table.number("format")
+    if version != FORMAT_VERSION:
+        raise PlanError(
+            f"expected {FORMAT_VERSION}, the only format there is", ("format",), version
+        )
+
+
+def _read_outline(table: Table) -> Polygon:
+    shell = _ring(table.points("outline"), ("outline",))
+    holes = [
+        _ring(as_points(hole, ("holes", index)), ("holes", index))
+        for index, hole in enumerate(table.items("holes"))
+    ]
+    return Polygon(shell, holes)
+
+
+def _ring(points: Corners, place: Place) -> Corners:
+    if len(points) < 4:
+        raise PlanError("expected at least three corners, then the first one again", place, points)
+    if points[0] != points[-1]:
+        raise PlanError(
+            f"{format_place(place)} is not closed: repeat the first point {list(points[0])}",
+            (*place, len(points) - 1),
+            points[-1],
+        )
+    return points
+
+
+def _read_wall(table: Table, defaults: Table, ceiling_m: float) -> list[Wall]:
+    """Return one wall for each straight piece of the polyline."""
+    points = table.points("points")
+    if len(points) < 2:
+        raise PlanError("expected at least two points", (*table.place, "points"), points)
+    material = table.text("material", defaults.optional_text("material"))
+    thickness_m = table.number("thickness_m", defaults.optional_number("thickness_m"))
+    height_m = table.number("height_m", ceiling_m)
+    openings = [_read_opening(row) for row in table.tables("openings", OPENING_KEYS)]
+    lengths = [dist(start, end) for start, end in pairwise(points)]
+    check_openings(openings, sum(lengths), height_m, table.place)
+    shares = _share_out(openings, lengths, points, table.place)
+    return [
+        Wall(start, end, material, thickness_m, height_m, share)
+        for (start, end), share in zip(pairwise(points), shares, strict=True)
+    ]
+
+
+def _read_opening(table: Table) -> Opening:
+    return Opening(
+        offset_m=table.number("offset_m"),
+        width_m=table.number("width_m"),
+        sill_m=table.number("sill_m", 0.0),
+        head_m=table.number("head_m"),
+        kind=opening_kind(table.text("kind"), (*table.place, "kind")),
+        material=table.optional_text("material"),
+        thickness_m=table.optional_number("thickness_m"),
+    )
+
+
+def _share_out(
+    openings: list[Opening], lengths: list[float], points: list[Point], place: Place
+) -> list[tuple[Opening, ...]]:
+    """Give each straight piece of a polyline its openings, with offsets from the piece's start."""
+    begins = list(accumulate(lengths, initial=0.0))
+    shares: list[list[Opening]] = [[] for _ in lengths]
+    for index, opening in enumerate(openings):
+        middle = opening.offset_m + opening.width_m / 2
+        piece = max(i for i in range(len(lengths)) if begins[i] <= middle)
+        for corner in (piece, piece + 1):
+            inside = opening.offset_m + TOLERANCE_M < begins[corner] < opening.end_m - TOLERANCE_M
+            if inside:
+                x, y = points[corner]
+                raise PlanError(
+                    f"the opening goes around the corner at ({x:g}, {y:g}), {begins[corner]:g} m "
+                    "along the wall; move it to one side or split it",
+                    (*place, "openings", index, "offset_m"),
+                    opening.offset_m,
+                )
+        shares[piece].append(_moved(opening, begins[piece]))
+    return [tuple(share) for share in shares]
+
+
+def _moved(opening: Opening, begin_m: float) -> Opening:
+    offset_m = max(opening.offset_m - begin_m, 0.0)
+    return Opening(
+        offset_m, opening.width_m, opening.sill_m, opening.head_m, opening.kind,
+        opening.material, opening.thickness_m,
+    )  # fmt: skip
+
+
+def _place_in_file(place: Place, piece_counts: list[int]) -> Place:
+    """Turn the index of a straight wall into that of the file's polyline it is a piece of."""
+    if len(place) < 2 or place[0] != "walls":
+        return place
+    tables = [table for table, count in enumerate(piece_counts) for _ in range(count)]
+    return ("walls", tables[int(place[1])], *place[2:])

@@ -1,0 +1,161 @@
+"""Checks of one wall and its openings; the first problem found raises `PlanError`."""
+
+from collections.abc import Sequence
+from itertools import combinations
+from math import isfinite
+from typing import get_args
+
+from floorplans.errors import Place, PlanError, unknown_name
+from floorplans.materials import MATERIALS
+from floorplans.walls import TOLERANCE_M, Opening, OpeningKind, Wall
+
+OPENING_KINDS: tuple[OpeningKind, ...] = get_args(OpeningKind)
+
+
+def check_wall(wall: Wall, ceiling_m: float, place: Place) -> None:
+    """Check a wall by itself: its ends, numbers, material and openings.
+
+    Parameters
+    ----------
+    wall : Wall
+    ceiling_m : float
+        Height of the ceiling above the floor [m].
+    place : Place
+        The wall's table, for the message.
+
+    Raises
+    ------
+    PlanError
+    """
+    for key, point in (("start", wall.start), ("end", wall.end)):
+        if not all(isfinite(coordinate) for coordinate in point):
+            raise PlanError("expected finite numbers [m]", (*place, key), point)
+    if wall.length_m < TOLERANCE_M:
+        x, y = wall.start
+        raise PlanError(
+            f"the wall has no length: it starts and ends at ({x:g}, {y:g}); "
+            "give two different points",
+            place,
+        )
+    check_material(wall.material, (*place, "material"))
+    check_positive(wall.thickness_m, (*place, "thickness_m"))
+    check_positive(wall.height_m, (*place, "height_m"))
+    if wall.height_m > ceiling_m:
+        raise PlanError(
+            f"the wall rises above the ceiling at {ceiling_m:g} m; lower it, or leave height_m out",
+            (*place, "height_m"),
+            wall.height_m,
+        )
+    check_openings(wall.openings, wall.length_m, wall.height_m, place)
+
+
+def check_openings(
+    openings: Sequence[Opening], length_m: float, height_m: float, place: Place
+) -> None:
+    """Check that the openings of a wall lie inside it and do not overlap.
+
+    Parameters
+    ----------
+    openings : sequence of Opening
+    length_m, height_m : float
+        Of the wall [m].
+    place : Place
+        The wall's table, for the message.
+
+    Raises
+    ------
+    PlanError
+    """
+    for index, opening in enumerate(openings):
+        here = (*place, "openings", index)
+        _check_extent_along(opening, length_m, here)
+        _check_extent_upwards(opening, height_m, here)
+        _check_filling(opening, here)
+    for first, second in combinations(range(len(openings)), 2):
+        if _overlap(openings[first], openings[second]):
+            o = openings[first]
+            raise PlanError(
+                f"the opening overlaps openings[{first}], which reaches from {o.offset_m:g} m to "
+                f"{o.end_m:g} m along the wall and from {o.sill_m:g} m to {o.head_m:g} m above "
+                "the floor; move or shrink one of them",
+                (*place, "openings", second),
+            )
+
+
+def check_material(name: str, place: Place) -> None:
+    """Raise `PlanError` for a material that is not in `MATERIALS`."""
+    if name not in MATERIALS:
+        raise PlanError(unknown_name("material", name, MATERIALS), place, name)
+
+
+def check_positive(number: float, place: Place) -> None:
+    """Raise `PlanError` for a length that is not a finite number above 0."""
+    if not (isfinite(number) and number > 0):
+        raise PlanError("expected a finite number greater than 0 [m]", place, number)
+
+
+def opening_kind(name: str, place: Place) -> OpeningKind:
+    """Return the kind of opening with this name; raise `PlanError` if there is none."""
+    for kind in OPENING_KINDS:
+        if kind == name:
+            return kind
+    raise PlanError(unknown_name("kind of opening", name, OPENING_KINDS), place, name)
+
+
+def _check_extent_along(opening: Opening, length_m: float, place: Place) -> None:
+    check_positive(opening.width_m, (*place, "width_m"))
+    if not opening.offset_m >= 0:
+        raise PlanError(
+            "the opening begins before its wall; expected 0 or more [m]",
+            (*place, "offset_m"),
+            opening.offset_m,
+        )
+    if not opening.end_m <= length_m + TOLERANCE_M:
+        raise PlanError(
+            f"the opening ends {opening.end_m:g} m along a wall of {length_m:g} m; with its width "
+            f"of {opening.width_m:g} m, expected at most {max(length_m - opening.width_m, 0):g}",
+            (*place, "offset_m"),
+            opening.offset_m,
+        )
+
+
+def _check_extent_upwards(opening: Opening, height_m: float, place: Place) -> None:
+    if not opening.sill_m >= 0:
+        raise PlanError(
+            "the opening begins below the floor; expected 0 or more [m]",
+            (*place, "sill_m"),
+            opening.sill_m,
+        )
+    if not opening.head_m <= height_m:
+        raise PlanError(
+            f"the opening is higher than its wall; expected at most {height_m:g} [m]",
+            (*place, "head_m"),
+            opening.head_m,
+        )
+    if not opening.sill_m < opening.head_m:
+        raise PlanError(
+            f"the sill is not below the head; expected less than {opening.head_m:g} [m]",
+            (*place, "sill_m"),
+            opening.sill_m,
+        )
+
+
+def _check_filling(opening: Opening, place: Place) -> None:
+    opening_kind(opening.kind, (*place, "kind"))
+    if opening.material is not None:
+        check_material(opening.material, (*place, "material"))
+    if opening.thickness_m is not None:
+        check_positive(opening.thickness_m, (*place, "thickness_m"))
+        if opening.material is None:
+            raise PlanError(
+                "thickness without a material; name the filling's material, "
+                "or leave thickness_m out",
+                (*place, "thickness_m"),
+                opening.thickness_m,
+            )
+
+
+def _overlap(a: Opening, b: Opening) -> bool:
+    along = min(a.end_m, b.end_m) - max(a.offset_m, b.offset_m)
+    upwards = min(a.head_m, b.head_m) - max(a.sill_m, b.sill_m)
+    return min(along, upwards) > TOLERANCE_M

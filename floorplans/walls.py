@@ -1,0 +1,170 @@
+"""Walls and their openings, and the solid parts that remain of a wall.
+
+A wall stands on the floor, on a straight centre line. A point of it has the coordinates s, the
+distance from its start along the centre line, and z, the height above the floor, both in metres.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from math import hypot
+from typing import Literal, NamedTuple
+
+OpeningKind = Literal["door", "window", "passage"]
+
+TOLERANCE_M = 1e-6
+"""Two points nearer than this are the same point [m]."""
+
+Point = tuple[float, float]
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Opening:
+    """A rectangular hole in a wall, open or filled with another sheet of material.
+
+    Attributes
+    ----------
+    offset_m : float
+        From the wall's start, along it, to the near side of the opening [m].
+    width_m : float
+        Along the wall [m].
+    sill_m, head_m : float
+        Heights of the lower and the upper edge above the floor [m].
+    kind : {"door", "window", "passage"}
+        How it is drawn; it has no part in the geometry.
+    material : str or None
+        What fills it; None leaves it open.
+    thickness_m : float or None
+        Of the filling [m]; None is the wall's own thickness.
+    """
+
+    offset_m: float
+    width_m: float
+    sill_m: float
+    head_m: float
+    kind: OpeningKind
+    material: str | None = None
+    thickness_m: float | None = None
+
+    @property
+    def end_m(self) -> float:
+        """Distance from the wall's start to the far side of the opening [m]."""
+        return self.offset_m + self.width_m
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A straight wall that stands on the floor.
+
+    Attributes
+    ----------
+    start, end : (float, float)
+        Ends (x, y) of its centre line [m].
+    material : str
+        One of `floorplans.MATERIALS`.
+    thickness_m, height_m : float
+        Thickness, and height above the floor [m].
+    openings : tuple of Opening
+        They may lie over each other (a window above a door) but not overlap.
+    """
+
+    start: Point
+    end: Point
+    material: str
+    thickness_m: float
+    height_m: float
+    openings: tuple[Opening, ...] = ()
+
+    @property
+    def length_m(self) -> float:
+        """Length of the centre line [m]."""
+        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+
+    def point_at(self, s: float) -> Point:
+        """Plan-view point (x, y) [m] at the distance `s` [m] from the start; exact at both ends."""
+        t = s / self.length_m
+        (x0, y0), (x1, y1) = self.start, self.end
+        return ((1 - t) * x0 + t * x1, (1 - t) * y0 + t * y1)
+
+
+class Panel(NamedTuple):
+    """A solid rectangle of a wall: [s_min, s_max] along it, [z_min, z_max] above the floor [m]."""
+
+    s_min: float
+    s_max: float
+    z_min: float
+    z_max: float
+    material: str
+    thickness_m: float
+
+
+def panels(wall: Wall) -> tuple[Panel, ...]:
+    """Cut what is solid of a wall into rectangles that do not overlap.
+
+    The wall itself comes first, as columns between the sides of its openings: whole where there is
+    no opening, sill and lintel where there is one. The fillings of openings follow, each in one
+    piece.
+
+    Returns
+    -------
+    tuple of Panel
+        Their areas add up to the wall's area minus that of its unfilled openings.
+    """
+    return (*_wall_panels(wall), *_fillings(wall))
+
+
+def _wall_panels(wall: Wall) -> Iterator[Panel]:
+    sides = {min(s, wall.length_m) for o in wall.openings for s in (o.offset_m, o.end_m)}
+    for s_min, s_max in pairwise(sorted(sides | {0.0, wall.length_m})):
+        if s_max - s_min < TOLERANCE_M:
+            continue
+        middle = (s_min + s_max) / 2
+        here = [o for o in wall.openings if o.offset_m < middle < o.end_m]
+        for z_min, z_max in complement(((o.sill_m, o.head_m) for o in here), wall.height_m):
+            yield Panel(s_min, s_max, z_min, z_max, wall.material, wall.thickness_m)
+
+
+def _fillings(wall: Wall) -> Iterator[Panel]:
+    for o in wall.openings:
+        if o.material is not None:
+            thickness = wall.thickness_m if o.thickness_m is None else o.thickness_m
+            s_max = min(o.end_m, wall.length_m)
+            yield Panel(o.offset_m, s_max, o.sill_m, o.head_m, o.material, thickness)
+
+
+def solid_intervals(wall: Wall, height_m: float) -> list[Interval]:
+    """Where along a wall it is solid at a height; an edge at exactly that height counts as solid.
+
+    Returns
+    -------
+    list of (float, float)
+        Disjoint intervals of s [m], in rising order, touching ones made one.
+    """
+    spans = [(p.s_min, p.s_max) for p in panels(wall) if p.z_min <= height_m <= p.z_max]
+    return _union(spans)
+
+
+def closed_intervals(wall: Wall) -> list[Interval]:
+    """Where along a wall no unfilled opening is, at any height, as intervals of s [m]."""
+    unfilled = ((o.offset_m, o.end_m) for o in wall.openings if o.material is None)
+    return list(complement(unfilled, wall.length_m))
+
+
+def complement(intervals: Iterable[Interval], end: float) -> Iterator[Interval]:
+    """Yield what a set of intervals leaves of [0, end], pieces shorter than 1e-6 m left out."""
+    position = 0.0
+    for low, high in [*_union(intervals), (end, end)]:
+        if low - position >= TOLERANCE_M:
+            yield (position, low)
+        position = max(position, high)
+
+
+def _union(intervals: Iterable[Interval]) -> list[Interval]:
+    merged: list[Interval] = []
+    for low, high in sorted(intervals):
+        if merged and low - merged[-1][1] < TOLERANCE_M:
+            merged[-1] = (merged[-1][0], max(high, merged[-1][1]))
+        else:
+            merged.append((low, high))
+    return merged
