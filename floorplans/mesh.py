@@ -83,9 +83,9 @@ def _sheets(plan: FloorPlan) -> Iterator[tuple[SheetMaterial, Triangles]]:
     for wall in plan.walls:
         for panel in panels(wall):
             yield SheetMaterial(panel.material, panel.thickness_m), _panel_triangles(wall, panel)
-    floor = _slab_triangles(plan.outline, 0.0)
+    floor = slab_triangles(plan.outline, 0.0)
     yield SheetMaterial(plan.floor_material, plan.floor_thickness_m), floor
-    ceiling = _slab_triangles(plan.outline, plan.height_m)[:, ::-1]
+    ceiling = slab_triangles(plan.outline, plan.height_m)[:, ::-1]
     yield SheetMaterial(plan.ceiling_material, plan.ceiling_thickness_m), ceiling
 
 
@@ -107,7 +107,7 @@ def _panel_triangles(wall: Wall, panel: Panel) -> Triangles:
     return panel_corners(wall, panel)[[[0, 1, 2], [0, 2, 3]]]
 
 
-def _slab_triangles(outline: Polygon, z: float) -> Triangles:
+def slab_triangles(outline: Polygon, z: float) -> Triangles:
     """Triangles of a flat slab that face upwards; only the outline's own corners are used."""
     parts = shapely.get_parts(shapely.constrained_delaunay_triangles(outline))
     rings = [shapely.get_coordinates(shapely.orient_polygons(part))[:3] for part in parts]
