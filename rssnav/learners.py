@@ -9,9 +9,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.agents import Agent, DecisionProcess, LocationAgent, QLearning, RssAgent
+from rssnav.agents import Agent, DecisionProcess, QLearning, RssAgent
 from rssnav.kernels import common, sensed, tabular
-from rssnav.kernels.common import Log, Moves, Parameters, Run
+from rssnav.kernels.common import Moves, Parameters, Run
 from rssnav.states import ExactStates, GoalRule, SensedStates, sensed_states
 from rssnav.world import GridWorld
 
@@ -23,7 +23,7 @@ class Learner(Protocol):
 
     run: Run
 
-    def advance(self, log: Log, until_episode: int) -> None:
+    def advance(self, until_episode: int) -> None:
         """Fly to ``until_episode``, or to the episode in which the run converges."""
         ...
 
@@ -71,11 +71,11 @@ class LearningProblem:
         """Number S of cells."""
         return self.process.next_state.shape[0]
 
-    def learner(self, generator: NDArray[np.uint64]) -> Learner:
-        """Begin a realisation that draws from a xoshiro256++ state (4,)."""
+    def learner(self, generator: NDArray[np.uint64], episodes: int) -> Learner:
+        """Begin a realisation of at most ``episodes``, drawing from a xoshiro256++ state (4,)."""
         if self.states is None:
-            return TabularLearner(self, generator)
-        return SensedLearner(self, self.states, generator)
+            return TabularLearner(self, generator, episodes)
+        return SensedLearner(self, self.states, generator, episodes)
 
 
 def _has_a_row_per_cell(agent: RssAgent, world: GridWorld) -> bool:
@@ -113,7 +113,10 @@ def parameters_of(learning: QLearning) -> Parameters:
 
 
 def _new_run(
-    problem: LearningProblem, q: NDArray[np.float64], generator: NDArray[np.uint64]
+    problem: LearningProblem,
+    q: NDArray[np.float64],
+    generator: NDArray[np.uint64],
+    episodes: int,
 ) -> Run:
     counters = np.zeros(common.N_COUNTERS, dtype=np.int64)
     counters[common.CONVERGED_EPISODE] = counters[common.CONVERGED_STEPS] = -1
@@ -124,33 +127,35 @@ def _new_run(
         generator=generator.copy(),
         rates=np.array([learning.epsilon_max, learning.alpha_max]),
         counters=counters,
-        path_hash=np.zeros(1, dtype=np.uint64),
+        episodes=np.empty((episodes, 3), dtype=np.int32),
     )
 
 
 class TabularLearner:
     """One row of Q per cell. Blocked actions are -inf unless the maximum runs over all."""
 
-    def __init__(self, problem: LearningProblem, generator: NDArray[np.uint64]) -> None:
+    def __init__(
+        self, problem: LearningProblem, generator: NDArray[np.uint64], episodes: int
+    ) -> None:
         process, learning = problem.process, problem.learning
-        self._moves = moves_of(process)
-        self._parameters = parameters_of(learning)
+        self.moves = moves_of(process)
+        self.parameters = parameters_of(learning)
         self._reward = process.reward.reshape(-1)
         self._blocked = process.next_state < 0
         q = np.full((problem.n_states, N_ACTIONS), learning.initial_q)
-        if not self._parameters.all_actions:
+        if not self.parameters.all_actions:
             q[self._blocked] = -np.inf
         q[process.terminal] = 0.0
-        self.run = _new_run(problem, q, generator)
-        self._greedy = tabular.Greedy(
-            value=np.empty(problem.n_states), action=np.empty(problem.n_states, dtype=np.int8)
+        self.run = _new_run(problem, q, generator, episodes)
+        self.greedy = tabular.Greedy(
+            value=np.empty(problem.n_states), action=np.empty(problem.n_states, dtype=np.uint8)
         )
-        tabular.renew_greedy(self.run.q, self._moves.next_state, self._greedy)
+        tabular.fill_greedy(self.run.q, self.greedy)
 
-    def advance(self, log: Log, until_episode: int) -> None:
+    def advance(self, until_episode: int) -> None:
         """Fly to ``until_episode``, or to the episode in which the run converges."""
         tabular.learn(
-            self._moves, self._reward, self._parameters, self.run, log, self._greedy, until_episode
+            self.moves, self._reward, self.parameters, self.run, self.greedy, until_episode
         )
 
     def cell_values(self) -> NDArray[np.float64]:
@@ -166,31 +171,33 @@ class SensedLearner:
     """A row of Q per label, labels made from the readings."""
 
     def __init__(
-        self, problem: LearningProblem, states: SensedStates, generator: NDArray[np.uint64]
+        self,
+        problem: LearningProblem,
+        states: SensedStates,
+        generator: NDArray[np.uint64],
+        episodes: int,
     ) -> None:
         self._states = states
-        self._moves = moves_of(problem.process)
-        self._parameters = parameters_of(problem.learning)
+        self.moves = moves_of(problem.process)
+        self.parameters = parameters_of(problem.learning)
         self._blocked = problem.process.next_state < 0
         self._initial_q = problem.learning.initial_q
-        self.run = _new_run(
-            problem, np.full((states.max_labels, N_ACTIONS), self._initial_q), generator
-        )
-        self.run.counters[common.N_ROWS] = states.n_listed
+        q = np.full((states.max_labels, N_ACTIONS), self._initial_q)
+        self.run = _new_run(problem, q, generator, episodes)
+        self.run.counters[common.N_LABELS] = states.n_listed
         self._book = sensed.Book(
             label_of_bin=np.full(states.n_bins, -1, dtype=np.int32),
             value_dbm=np.zeros(states.max_labels),
             fluctuation_db=np.zeros(1),
         )
 
-    def advance(self, log: Log, until_episode: int) -> None:
+    def advance(self, until_episode: int) -> None:
         """Fly to ``until_episode``, or to the episode in which the run converges."""
         sensed.learn(
-            self._moves,
+            self.moves,
             self._states.sensor,
-            self._parameters,
+            self.parameters,
             self.run,
-            log,
             self._book,
             until_episode,
         )
@@ -205,4 +212,4 @@ class SensedLearner:
 
     def n_labels(self) -> int:
         """States the agent tells apart so far."""
-        return int(self.run.counters[common.N_ROWS])
+        return int(self.run.counters[common.N_LABELS])

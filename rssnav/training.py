@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from rssnav.agents import Agent, QLearning
 from rssnav.kernels import common
-from rssnav.kernels.common import Log
 from rssnav.learners import LearningProblem
 from rssnav.planning import Path, greedy_path
 from rssnav.results import Schedule, TrainingResult, padded
@@ -30,7 +29,7 @@ Progress = Callable[[int, int], None]
 _CHUNK_EPISODES = 64  # between two looks at an interrupt
 
 
-class TrainingInterrupted(KeyboardInterrupt):  # noqa: N818 (it is no error)
+class TrainingInterrupted(KeyboardInterrupt):
     """Ctrl-C during training; ``result`` holds the finished realisations (None without any).
 
     Save it, and pass it to :func:`train` as ``resume`` to train the missing ones.
@@ -47,7 +46,8 @@ class _Realisation:
     """One finished run."""
 
     run_id: int
-    log: Log  # trimmed to the episodes flown
+    episodes: NDArray[np.int32]  # (episodes flown, 3)
+    snapshots: NDArray[np.int32]  # (K, S)
     counters: NDArray[np.int64]
     converged_cpu_s: float
     cpu_s: float
@@ -204,23 +204,29 @@ class _Realiser:
 
     def __call__(self, run_id: int) -> _Realisation | None:
         """Train a realisation; None when told to stop on the way."""
-        learner = self.problem.learner(generator_state(self.schedule.seed, run_id))
-        log = self._new_log()
+        schedule = self.schedule
+        learner = self.problem.learner(generator_state(schedule.seed, run_id), schedule.episodes)
         counters = learner.run.counters
+        snapshots = np.zeros(
+            (len(schedule.snapshot_episodes), self.problem.n_states), dtype=np.int32
+        )
         begin_s = time.thread_time()
         converged_s = 0.0
         while counters[common.EPISODE] < (limit := self._limit(counters)):
             if self.stop.is_set():
                 return None
             undecided = counters[common.CONVERGED_EPISODE] < 0
-            learner.advance(log, min(limit, int(counters[common.EPISODE]) + _CHUNK_EPISODES))
+            learner.advance(self._next_stop(int(counters[common.EPISODE]), limit))
             if undecided:
                 converged_s = time.thread_time() - begin_s
+            if (flown := int(counters[common.EPISODE])) in schedule.snapshot_episodes:
+                snapshots[schedule.snapshot_episodes.index(flown)] = learner.run.visits
         cpu_s = time.thread_time() - begin_s
         q = learner.cell_values()
         return _Realisation(
             run_id=run_id,
-            log=_trimmed(log, int(counters[common.EPISODE])),
+            episodes=learner.run.episodes[: counters[common.EPISODE]].copy(),
+            snapshots=snapshots,
             counters=counters,
             converged_cpu_s=converged_s,
             cpu_s=cpu_s,
@@ -229,30 +235,16 @@ class _Realiser:
             q=q if self.keep_q else None,
         )
 
+    def _next_stop(self, episode: int, limit: int) -> int:
+        """Episode up to which to fly without a look at snapshots and interrupts."""
+        snapshots = [k for k in self.schedule.snapshot_episodes if k > episode]
+        return min(limit, episode + _CHUNK_EPISODES, *snapshots)
+
     def _limit(self, counters: NDArray[np.int64]) -> int:
         """Episode at which the run ends, as far as is known by now."""
         if self.schedule.until_converged and counters[common.CONVERGED_EPISODE] >= 0:
             return self.schedule.guaranteed_episodes
         return self.schedule.episodes
-
-    def _new_log(self) -> Log:
-        episodes, snapshots = self.schedule.episodes, self.schedule.snapshot_episodes
-        return Log(
-            steps=np.empty(episodes, dtype=np.int32),
-            diagonal_steps=np.empty(episodes, dtype=np.int32),
-            truncated=np.empty(episodes, dtype=np.bool_),
-            snapshots=np.zeros((len(snapshots), self.problem.n_states), dtype=np.int32),
-            snapshot_episodes=np.array(snapshots, dtype=np.int64),
-        )
-
-
-def _trimmed(log: Log, episodes: int) -> Log:
-    """A log's first episodes, without the memory of those that were not flown."""
-    return log._replace(
-        steps=log.steps[:episodes].copy(),
-        diagonal_steps=log.diagonal_steps[:episodes].copy(),
-        truncated=log.truncated[:episodes].copy(),
-    )
 
 
 def _on_threads(
@@ -289,16 +281,16 @@ def _collect(
     counters = np.array([r.counters for r in ordered])
     visit_counts = np.zeros((len(schedule.snapshot_episodes), world.n_states), dtype=np.int64)
     for realisation in ordered:
-        visit_counts += realisation.log.snapshots
+        visit_counts += realisation.snapshots
     return TrainingResult(
         world=world,
         agent=agent,
         learning=learning,
         schedule=schedule,
         run_ids=np.array([r.run_id for r in ordered], dtype=np.int64),
-        steps=padded([r.log.steps for r in ordered], -1),
-        diagonal_steps=padded([r.log.diagonal_steps for r in ordered], -1),
-        truncated=padded([r.log.truncated for r in ordered], False),
+        steps=_column(ordered, common.STEPS),
+        diagonal_steps=_column(ordered, common.DIAGONAL_STEPS),
+        truncated=_column(ordered, common.TRUNCATED) == 1,
         episodes_flown=counters[:, common.EPISODE],
         visit_counts=visit_counts,
         converged_episode=counters[:, common.CONVERGED_EPISODE],
@@ -312,3 +304,8 @@ def _collect(
         n_labels=np.array([r.n_labels for r in ordered], dtype=np.int64),
         q=np.stack([r.q for r in ordered if r.q is not None]) if ordered[0].q is not None else None,
     )
+
+
+def _column(realisations: Sequence[_Realisation], column: int) -> NDArray[np.int32]:
+    """One column of the episode logs, shape (R, E); -1 after a run's last episode."""
+    return padded([r.episodes[:, column] for r in realisations], -1)

@@ -18,10 +18,13 @@ from numpy.typing import NDArray
 from rssnav.kernels.common import (
     EPISODE,
     HASH_START,
-    N_ROWS,
-    decay_before_episode,
+    N_LABELS,
+    Moves,
+    Parameters,
+    Run,
+    close_episode,
+    decayed,
     extended_hash,
-    record_episode,
 )
 from rssnav.kernels.xoshiro import (
     gaussian,
@@ -63,7 +66,7 @@ class Book(NamedTuple):
 
 
 @njit(inline="always")
-def _draw(generator):
+def _draw(generator: NDArray[np.uint64]) -> np.uint64:
     bits, generator[0], generator[1], generator[2], generator[3] = next_uint64(
         generator[0], generator[1], generator[2], generator[3]
     )
@@ -71,7 +74,7 @@ def _draw(generator):
 
 
 @njit(inline="always")
-def _reading(sensor, book, generator, cell):
+def _reading(sensor: Sensor, book: Book, generator: NDArray[np.uint64], cell: int) -> float:
     """RSS read in a cell [dBm]: a first-order autoregressive fluctuation on the map's value."""
     if sensor.sigma_db == 0.0:
         return sensor.rss_dbm[cell]
@@ -82,13 +85,13 @@ def _reading(sensor, book, generator, cell):
 
 
 @njit(inline="always")
-def _bin(sensor, book, reading):
+def _bin(sensor: Sensor, book: Book, reading: float) -> int:
     position = int((reading - sensor.low_dbm) * (2.0 / sensor.threshold_db))
     return min(max(position, 0), book.label_of_bin.size - 1)
 
 
 @njit(cache=True, nogil=True)
-def _known_state(sensor, book, reading):
+def _known_state(sensor: Sensor, book: Book, reading: float) -> int:
     """Nearest known state within Th of a reading, the older of two as near; -1 if there is none."""
     centre = _bin(sensor, book, reading)
     label, nearest = -1, sensor.threshold_db
@@ -104,7 +107,9 @@ def _known_state(sensor, book, reading):
 
 
 @njit(inline="always")
-def _label(sensor, book, counters, cell, reading):
+def _label(
+    sensor: Sensor, book: Book, counters: NDArray[np.int64], cell: int, reading: float
+) -> int:
     """Label of a reading; a tolerance state is created when none fits."""
     if sensor.kind == LISTED:
         return sensor.listed[cell]
@@ -112,15 +117,17 @@ def _label(sensor, book, counters, cell, reading):
         return np.searchsorted(sensor.edges_dbm, reading, side="right")
     label = _known_state(sensor, book, reading)
     if label < 0:
-        label = counters[N_ROWS]
+        label = counters[N_LABELS]
         book.value_dbm[label] = reading
         book.label_of_bin[_bin(sensor, book, reading)] = label
-        counters[N_ROWS] += 1
+        counters[N_LABELS] += 1
     return label
 
 
 @njit(inline="always")
-def _best(moves, all_actions, q, label, cell):
+def _best(
+    moves: Moves, all_actions: bool, q: NDArray[np.float64], label: int, cell: int
+) -> tuple[float, int]:
     """Maximum of a row over the actions that count in a cell, and how many attain it."""
     best, ties = -np.inf, 0
     for a in range(8):
@@ -132,23 +139,26 @@ def _best(moves, all_actions, q, label, cell):
 
 
 @njit(inline="always")
-def _greedy(moves, parameters, q, generator, label, cell):
-    """Greedy action in a cell, -1 when it is blocked."""
+def _greedy(moves: Moves, parameters: Parameters, run: Run, label: int, cell: int) -> int:
+    """Greedy action in a cell; it may be blocked when the maximum runs over all actions."""
+    q = run.q
     best, ties = _best(moves, parameters.all_actions, q, label, cell)
     skip = np.uint64(0)
     if parameters.random_ties:
-        skip = index_from_low_bits(_draw(generator), np.uint64(ties))
+        skip = index_from_low_bits(_draw(run.generator), np.uint64(ties))
     for a in range(8):
-        possible = moves.next_state[8 * cell + a] >= 0
-        if q[8 * label + a] == best and (possible or parameters.all_actions):
+        counts = parameters.all_actions or moves.next_state[8 * cell + a] >= 0
+        if counts and q[8 * label + a] == best:
             if skip == 0:
-                return a if possible else -1
+                return a
             skip -= np.uint64(1)
-    return -1
+    return 0
 
 
 @njit(cache=True, nogil=True)
-def _fly_episode(moves, sensor, parameters, run, book):
+def _fly_episode(
+    moves: Moves, sensor: Sensor, parameters: Parameters, run: Run, book: Book
+) -> tuple[int, int, np.uint64, bool]:
     """Fly and learn from the start to the goal or the cap.
 
     Returns (steps, diagonal steps, path hash, terminated).
@@ -160,13 +170,11 @@ def _fly_episode(moves, sensor, parameters, run, book):
     label = _label(sensor, book, counters, cell, reading)
     run.visits[cell] += 1
     while not terminated and steps < parameters.max_steps:
-        if rates[0] >= parameters.epsilon_min:
-            rates[0] *= parameters.step_decay
-        if rates[1] >= parameters.alpha_min:
-            rates[1] *= parameters.step_decay
-        choice = _greedy(moves, parameters, q, generator, label, cell)
+        rates[0] = decayed(rates[0], parameters.epsilon_min, parameters.step_decay)
+        rates[1] = decayed(rates[1], parameters.alpha_min, parameters.step_decay)
+        choice = _greedy(moves, parameters, run, label, cell)
         bits = _draw(generator)
-        if unit_from_high_bits(bits) < rates[0] or choice < 0:
+        if unit_from_high_bits(bits) < rates[0] or moves.next_state[8 * cell + choice] < 0:
             pick = index_from_low_bits(bits, np.uint64(moves.n_possible[cell]))
             choice = np.int64(moves.possible[8 * cell + np.int64(pick)])
         arrived = np.int64(moves.next_state[8 * cell + choice])
@@ -181,7 +189,7 @@ def _fly_episode(moves, sensor, parameters, run, book):
             value, _ = _best(moves, parameters.all_actions, q, next_label, arrived)
         entry = 8 * label + choice
         q[entry] = (1.0 - rates[1]) * q[entry] + rates[1] * (reward + parameters.gamma * value)
-        path_hash = extended_hash(path_hash, choice)
+        path_hash = extended_hash(path_hash, np.uint64(choice))
         diagonal += choice & 1
         steps += 1
         run.visits[arrived] += 1
@@ -190,17 +198,22 @@ def _fly_episode(moves, sensor, parameters, run, book):
 
 
 @njit(cache=True, nogil=True)
-def learn(moves, sensor, parameters, run, log, book, until_episode):
+def learn(
+    moves: Moves, sensor: Sensor, parameters: Parameters, run: Run, book: Book, until_episode: int
+) -> None:
     """Go on learning to ``until_episode``, or to the episode in which the run converges."""
-    while run.counters[EPISODE] < until_episode:
-        decay_before_episode(parameters, run.rates)
+    rates, converged = run.rates, False
+    while run.counters[EPISODE] < until_episode and not converged:
+        rates[0] = decayed(rates[0], parameters.epsilon_min, parameters.episode_decay)
+        rates[1] = decayed(rates[1], parameters.alpha_min, parameters.episode_decay)
         steps, diagonal, path_hash, terminated = _fly_episode(moves, sensor, parameters, run, book)
-        if record_episode(run, log, steps, diagonal, path_hash, terminated):
-            return
+        converged = close_episode(
+            run.counters, run.episodes, steps, diagonal, path_hash, terminated
+        )
 
 
 @njit(cache=True, nogil=True)
-def steady_labels(sensor, book, labels):
+def steady_labels(sensor: Sensor, book: Book, labels: NDArray[np.int32]) -> None:
     """Label of every cell's reading without fluctuation; -1 where no known state fits."""
     for cell in range(labels.size):
         reading = sensor.rss_dbm[cell]

@@ -1,9 +1,8 @@
 """Q-learning with one Q row per cell: the loop the paper's twelve configurations run in.
 
-The greedy action and the maximum of every row are kept beside the table and renewed when a step
-changes the row. Where to fly next then hangs on two loads, not on a scan of the row, and the scan
-of the row just left overlaps with the following steps. The row of the state arrived at is never the row
-updated (a step always leaves its cell), so this is Algorithm 1 to the letter.
+The maximum of every row and the first action that attains it are kept beside the table and
+renewed when a step changes the row, which seldom needs a scan. The row of the state arrived at is
+never the row updated (a step always leaves its cell), so this is Algorithm 1 to the letter.
 """
 
 from __future__ import annotations
@@ -17,12 +16,16 @@ from numpy.typing import NDArray
 from rssnav.kernels.common import (
     EPISODE,
     HASH_START,
-    decay_before_episode,
+    Moves,
+    Parameters,
+    Run,
+    close_episode,
+    decayed,
     extended_hash,
-    record_episode,
 )
 from rssnav.kernels.xoshiro import index_from_low_bits, next_uint64, unit_from_high_bits
 
+# Unsigned indices spare numba's check for negative ones.
 _8 = np.uint64(8)
 _1 = np.uint64(1)
 
@@ -31,11 +34,11 @@ class Greedy(NamedTuple):
     """Maximum of each row of Q, and the first action that attains it."""
 
     value: NDArray[np.float64]  # (S,)
-    action: NDArray[np.int8]  # (S,) -1 where that action is blocked
+    action: NDArray[np.uint8]  # (S,)
 
 
 @njit(inline="always")
-def first_best(q, row):
+def _first_best(q: NDArray[np.float64], row: np.uint64) -> tuple[float, np.uint64]:
     """Largest of the eight values from ``row`` on, and the first action that attains it."""
     best, action = q[row], np.uint64(0)
     for a in range(_1, _8):
@@ -46,84 +49,93 @@ def first_best(q, row):
     return best, action
 
 
+@njit(inline="always")
+def _renewed(
+    q: NDArray[np.float64], row: np.uint64, changed: np.uint64, best: float, first: np.uint64
+) -> tuple[float, np.uint64]:
+    """Maximum of a row and its first action after the value of ``changed`` became another."""
+    value = q[row + changed]
+    if changed == first and value < best:
+        return _first_best(q, row)
+    if value > best or (value == best and changed < first):
+        return value, changed
+    return best, first
+
+
 @njit(cache=True, nogil=True)
-def renew_greedy(q, next_state, greedy):
-    """Fill ``greedy`` from the whole table."""
+def fill_greedy(q: NDArray[np.float64], greedy: Greedy) -> None:
+    """Find the greedy action of every row."""
     for state in range(greedy.value.size):
-        row = np.uint64(8 * state)
-        best, action = first_best(q, row)
-        greedy.value[state] = best
-        greedy.action[state] = action if next_state[row + action] >= 0 else -1
+        greedy.value[state], greedy.action[state] = _first_best(q, np.uint64(8 * state))
 
 
 @njit(cache=True, nogil=True)
-def _random_best(q, next_state, row, best, bits):
-    """Uniform choice among the actions of a row that attain ``best``; -1 when it is blocked."""
+def _random_best(q: NDArray[np.float64], row: np.uint64, best: float, bits: np.uint64) -> np.uint64:
+    """Uniform choice among the actions of a row that attain ``best``."""
     ties = np.uint64(0)
     for a in range(_8):
         ties += np.uint64(q[row + a] == best)
-    wanted = index_from_low_bits(bits, ties)
+    skip = index_from_low_bits(bits, ties)
     for a in range(_8):
         if q[row + a] == best:
-            if wanted == 0:
-                return np.int64(a) if next_state[row + a] >= 0 else -1
-            wanted -= _1
-    return -1
+            if skip == 0:
+                return a
+            skip -= _1
+    return np.uint64(0)
 
 
 @njit(cache=True, nogil=True)
-def _fly_episode(moves, reward, parameters, run, greedy):
-    """Fly and learn from the start to the goal or the cap.
-
-    Returns (steps, diagonal steps, path hash, terminated).
-    """
-    next_state, possible, n_possible = moves.next_state, moves.possible, moves.n_possible
-    terminal, q, visits = moves.terminal, run.q, run.visits
-    best_value, best_action = greedy.value, greedy.action
-    decay, gamma, max_steps = parameters.step_decay, parameters.gamma, parameters.max_steps
-    epsilon, alpha = run.rates[0], run.rates[1]
-    s0, s1, s2, s3 = run.generator[0], run.generator[1], run.generator[2], run.generator[3]
-    path_hash, diagonal, steps, terminated = HASH_START, np.uint64(0), 0, False
-    state = np.uint64(moves.start)
-    visits[state] += 1
-    while not terminated and steps < max_steps:
-        if epsilon >= parameters.epsilon_min:
-            epsilon *= decay
-        if alpha >= parameters.alpha_min:
-            alpha *= decay
-        row = state * _8
-        choice = np.int64(best_action[state])
-        if parameters.random_ties:
-            bits, s0, s1, s2, s3 = next_uint64(s0, s1, s2, s3)
-            choice = _random_best(q, next_state, row, best_value[state], bits)
-        bits, s0, s1, s2, s3 = next_uint64(s0, s1, s2, s3)
-        any_possible = possible[row + index_from_low_bits(bits, np.uint64(n_possible[state]))]
-        explore = (unit_from_high_bits(bits) < epsilon) | (choice < 0)
-        action = np.uint64(np.int64(any_possible) if explore else choice)
-        arrived = np.uint64(next_state[row + action])
-        terminated = terminal[arrived]
-        target = reward[row + action] + gamma * best_value[arrived]
-        q[row + action] = (1.0 - alpha) * q[row + action] + alpha * target
-        best, first = first_best(q, row)
-        best_value[state] = best
-        best_action[state] = np.int64(first) if next_state[row + first] >= 0 else -1
-        path_hash = extended_hash(path_hash, action)
-        diagonal += action & _1
-        steps += 1
-        visits[arrived] += 1
-        state = arrived
-    run.rates[0], run.rates[1] = epsilon, alpha
-    run.generator[0], run.generator[1], run.generator[2], run.generator[3] = s0, s1, s2, s3
-    return steps, np.int64(diagonal), path_hash, terminated
-
-
-@njit(cache=True, nogil=True)
-def learn(moves, reward, parameters, run, log, greedy, until_episode):
+def learn(
+    moves: Moves,
+    reward: NDArray[np.float64],
+    parameters: Parameters,
+    run: Run,
+    greedy: Greedy,
+    until_episode: int,
+) -> None:
     """Go on learning to ``until_episode``, or to the episode in which the run converges."""
-    while run.counters[EPISODE] < until_episode:
-        decay_before_episode(parameters, run.rates)
-        steps, diagonal, path_hash, terminated = _fly_episode(
-            moves, reward, parameters, run, greedy
+    next_state, terminal, q, visits = moves.next_state, moves.terminal, run.q, run.visits
+    possible, n_possible = moves.possible, moves.n_possible
+    best_value, best_action = greedy.value, greedy.action
+    counters, episodes, rates, generator = run.counters, run.episodes, run.rates, run.generator
+    epsilon_min, alpha_min = parameters.epsilon_min, parameters.alpha_min
+    decay, gamma, max_steps = parameters.step_decay, parameters.gamma, parameters.max_steps
+    random_ties, episode_decay = parameters.random_ties, parameters.episode_decay
+    epsilon, alpha = rates[0], rates[1]
+    s0, s1, s2, s3 = generator[0], generator[1], generator[2], generator[3]
+    converged = False
+    while counters[EPISODE] < until_episode and not converged:
+        epsilon = decayed(epsilon, epsilon_min, episode_decay)
+        alpha = decayed(alpha, alpha_min, episode_decay)
+        path_hash, diagonal, steps, terminated = HASH_START, np.uint64(0), 0, False
+        state = np.uint64(moves.start)
+        visits[state] += 1
+        while not terminated and steps < max_steps:
+            epsilon = decayed(epsilon, epsilon_min, decay)
+            alpha = decayed(alpha, alpha_min, decay)
+            row = state * _8
+            action = np.uint64(best_action[state])
+            if random_ties:
+                bits, s0, s1, s2, s3 = next_uint64(s0, s1, s2, s3)
+                action = _random_best(q, row, best_value[state], bits)
+            bits, s0, s1, s2, s3 = next_uint64(s0, s1, s2, s3)
+            if unit_from_high_bits(bits) < epsilon or next_state[row + action] < 0:
+                pick = index_from_low_bits(bits, np.uint64(n_possible[state]))
+                action = np.uint64(possible[row + pick])
+            arrived = np.uint64(next_state[row + action])
+            terminated = terminal[arrived]
+            target = reward[row + action] + gamma * best_value[arrived]  # 0 beyond a terminal
+            q[row + action] = (1.0 - alpha) * q[row + action] + alpha * target
+            best_value[state], best_action[state] = _renewed(
+                q, row, action, best_value[state], np.uint64(best_action[state])
+            )
+            path_hash = extended_hash(path_hash, action)
+            diagonal += action & _1
+            steps += 1
+            visits[arrived] += 1
+            state = arrived
+        converged = close_episode(
+            counters, episodes, steps, np.int64(diagonal), path_hash, terminated
         )
-        if record_episode(run, log, steps, diagonal, path_hash, terminated):
-            return
+    rates[0], rates[1] = epsilon, alpha
+    generator[0], generator[1], generator[2], generator[3] = s0, s1, s2, s3

@@ -24,7 +24,9 @@ _UNIT_53 = 2.0**-53
 
 
 @njit(inline="always")
-def next_uint64(s0, s1, s2, s3):
+def next_uint64(
+    s0: np.uint64, s1: np.uint64, s2: np.uint64, s3: np.uint64
+) -> tuple[np.uint64, np.uint64, np.uint64, np.uint64, np.uint64]:
     """Next 64 random bits and the advanced state: ``(bits, s0, s1, s2, s3)``."""
     total = s0 + s3
     bits = ((total << _23) | (total >> _41)) + s0
@@ -39,19 +41,19 @@ def next_uint64(s0, s1, s2, s3):
 
 
 @njit(inline="always")
-def unit_from_high_bits(bits):
+def unit_from_high_bits(bits: np.uint64) -> float:
     """Uniform number in [0, 1) from the upper 32 bits."""
     return np.float64(bits >> _32) * _UNIT_32
 
 
 @njit(inline="always")
-def index_from_low_bits(bits, count):
+def index_from_low_bits(bits: np.uint64, count: np.uint64) -> np.uint64:
     """Uniform index in 0..count-1 from the lower 32 bits (multiply-shift; bias < count / 2^32)."""
     return ((bits & _LOW_32) * count) >> _32
 
 
 @njit(inline="always")
-def gaussian(bits_a, bits_b):
+def gaussian(bits_a: np.uint64, bits_b: np.uint64) -> float:
     """Standard normal number from two draws (Box-Muller), at most 8.6 in magnitude."""
     radius = math.sqrt(-2.0 * math.log((np.float64(bits_a >> _11) + 1.0) * _UNIT_53))
     return radius * math.cos(2.0 * math.pi * _UNIT_53 * np.float64(bits_b >> _11))
