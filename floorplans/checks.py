@@ -97,11 +97,11 @@ def _check_enclosure(plan: FloorPlan) -> None:
     ]
     cover = shapely.union_all(closed).buffer(2 * TOLERANCE_M)
     for ring in (plan.outline.exterior, *plan.outline.interiors):
-        gaps = _lines(ring.difference(cover))
-        for gap in gaps:
+        for gap in _lines(ring.difference(cover)):
             if gap.length > 10 * TOLERANCE_M:
+                side = LineString(gap.coords[:2])
                 raise PlanError(
-                    f"the outline is open from {_stretch(gap)}; put a wall from floor to ceiling "
+                    f"the outline is open from {_stretch(side)}; put a wall from floor to ceiling "
                     "there, and give a door or window in it a material",
                     ("outline",),
                 )

@@ -1,4 +1,4 @@
-"""Pictures of a plan: a drawing from above, and a view in perspective.
+"""Pictures of a plan: a drawing from above, and a view of its walls in three dimensions.
 
 The drawing from above is cut as architects cut: all openings show, whatever their height. Artists
 carry a group id ("walls:brick", "openings:door", "source" ...) by which they can be found and

@@ -1,4 +1,4 @@
-"""A plan in perspective: translucent walls on a light floor, seen from above, without ceiling."""
+"""A plan in three dimensions: translucent walls on a light floor, in parallel projection."""
 
 from itertools import product
 
@@ -33,7 +33,7 @@ FLOOR = "#f1eee6"
 
 
 def draw_plan_3d(plan: FloorPlan, ax: Axes3D) -> None:
-    """Draw a plan's walls in perspective, true to scale, with source and start.
+    """Draw a plan's walls in parallel projection, true to scale, without ceiling.
 
     Parameters
     ----------

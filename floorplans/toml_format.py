@@ -12,7 +12,7 @@ from floorplans.errors import Place, PlanError, format_place
 from floorplans.plan import FloorPlan
 from floorplans.toml_table import Table, as_points
 from floorplans.toml_writer import FORMAT_VERSION, dumps
-from floorplans.wall_checks import check_openings, opening_kind
+from floorplans.wall_checks import check_openings, check_positive, opening_kind
 from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 
 PLAN_KEYS = (
@@ -99,6 +99,7 @@ def save(plan: FloorPlan, path: str | Path) -> None:
 def _read_plan(table: Table) -> FloorPlan:
     _check_version(table)
     height_m = table.number("height_m")
+    check_positive(height_m, ("height_m",))
     defaults = table.table("defaults", DEFAULTS_KEYS)
     pieces = [_read_wall(wall, defaults, height_m) for wall in table.tables("walls", WALL_KEYS)]
     x, y, z = table.coordinates("source", "xyz")
