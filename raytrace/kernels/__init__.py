@@ -1,1 +1,1 @@
-"""Placeholder docstring, replaced below."""
+"""The compiled inner loops: arrays and SI numbers in, arrays out, no checks."""

@@ -1,0 +1,179 @@
+"""The three families of paths: reflected only, over an upright edge, over a level edge.
+
+Each family is a job: it grows its own beams, adds its paths to sums, and can write them out
+one by one.
+"""
+
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raytrace.edges import LevelEdge, UprightEdge
+from raytrace.kernels.beams import ORDER, Tree, grow_tree, hit_points
+from raytrace.kernels.level_edges import Rim, RimLegsIn, sum_level_edge
+from raytrace.kernels.path_points import level_points, reflection_points, upright_points
+from raytrace.kernels.reflections import sum_reflections
+from raytrace.kernels.strips import StripTree, edge_frame, grow_strips, hit_from_strip
+from raytrace.kernels.tracing import Record, Sums
+from raytrace.kernels.upright_edges import Edge, LegsIn, legs_to_edge, sum_upright_edge
+from raytrace.kernels.utd import Wedge
+from raytrace.preparing import Tracing
+
+Floats = NDArray[np.float64]
+
+
+class Family(Protocol):
+    """Some of the paths of a trace."""
+
+    def add_to(self, sums: Sums, record: Record) -> None:
+        """Add the paths to sums, and to a record as far as it has room."""
+        ...
+
+    def receivers_of(self, record: Record) -> NDArray[np.int64]:
+        """Receiver of each recorded path (n,)."""
+        ...
+
+    def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
+        """Write the points (n, most, 3) [m] and interactions (n, most - 2) of recorded paths."""
+        ...
+
+
+class Reflections:
+    """Line of sight and every sequence of reflections."""
+
+    def __init__(self, tracing: Tracing) -> None:
+        self._tracing = tracing
+
+    @cached_property
+    def _hits(self) -> NDArray[np.int32]:
+        return hit_points(self._tracing.tree, self._tracing.targets)
+
+    def add_to(self, sums: Sums, record: Record) -> None:
+        """See `Family`."""
+        sum_reflections(self._tracing.trace, self._tracing.tree, self._hits, sums, record)
+
+    def receivers_of(self, record: Record) -> NDArray[np.int64]:
+        """See `Family`."""
+        return _receivers(self._hits, record)
+
+    def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
+        """See `Family`."""
+        trace, tree = self._tracing.trace, self._tracing.tree
+        reflection_points(trace, tree, self._hits, record, points, kinds)
+
+
+class OverUprightEdge:
+    """Every path that one vertical edge diffracts."""
+
+    def __init__(self, tracing: Tracing, edge: UprightEdge) -> None:
+        self._tracing = tracing
+        self._cells = edge.cells
+        self._vertex = edge.vertex
+        self._edge = Edge(
+            edge.x, edge.y, edge.z_low, edge.z_high, edge.o_face_azimuth,
+            Wedge(edge.wedge_n, edge.o_material, edge.n_material),
+        )  # fmt: skip
+
+    @cached_property
+    def _legs_in(self) -> LegsIn:
+        tree, corners = self._tracing.tree, self._tracing.corners
+        beams = corners[corners[:, 0] == self._vertex, 1]
+        beams = beams[np.argsort(tree.link[beams, ORDER], kind="stable")]
+        return legs_to_edge(self._tracing.trace, tree, beams, self._edge)
+
+    @cached_property
+    def _lit(self) -> tuple[Tree, NDArray[np.int32]]:
+        t = self._tracing
+        budget = t.config.max_reflections - int(self._legs_in.order[0])
+        tree = grow_tree(t.trace.plan, t.bounces, self._edge.x, self._edge.y, self._cells, budget)
+        return tree, hit_points(tree, t.targets)
+
+    def add_to(self, sums: Sums, record: Record) -> None:
+        """See `Family`."""
+        if len(self._legs_in.order):
+            legs, (tree, hits) = self._legs_in, self._lit
+            sum_upright_edge(self._tracing.trace, self._edge, legs, tree, hits, sums, record)
+
+    def receivers_of(self, record: Record) -> NDArray[np.int64]:
+        """See `Family`."""
+        return _receivers(self._lit[1], record)
+
+    def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
+        """See `Family`."""
+        trace, (tree, hits) = self._tracing.trace, self._lit
+        upright_points(trace, self._edge, self._legs_in, tree, hits, record, points, kinds)
+
+
+class OverLevelEdge:
+    """Every path that leaves one side of a level edge (side 0 or 1 of its plan edges)."""
+
+    def __init__(self, tracing: Tracing, edge: LevelEdge, side: int) -> None:
+        self._tracing = tracing
+        self._near, self._far = edge.plan_edges[side], edge.plan_edges[1 - side]
+        self._rim = Rim(
+            edge_frame(tracing.trace.plan, self._near), edge.z, 1.0 if edge.wall_above else -1.0,
+            edge.material,
+        )  # fmt: skip
+
+    @cached_property
+    def _legs_in(self) -> RimLegsIn:
+        t = self._tracing
+        x1, y1, x2, y2 = t.trace.plan.ends[self._near]
+        length = np.hypot(x2 - x1, y2 - y1)
+        mine = np.flatnonzero(np.isin(t.rims[:, 0], (self._near, self._far)))
+        beams = t.rims[mine, 1]
+        order = np.argsort(t.tree.link[beams, ORDER], kind="stable")
+        mine, beams = mine[order], beams[order]
+        stretch = t.stretches[mine]
+        turned = (t.rims[mine, 0] == self._far)[:, None]
+        stretch = np.where(turned, 1.0 - stretch[:, ::-1], stretch) * length
+        frame, image = self._rim.frame, t.tree.beam[beams]
+        return RimLegsIn(
+            order=t.tree.link[beams, ORDER].astype(np.int64),
+            beam=beams.astype(np.int64),
+            x=frame[0] * image[:, 0] + frame[1] * image[:, 1] + frame[2],
+            h=frame[3] * image[:, 0] + frame[4] * image[:, 1] + frame[5],
+            low=np.ascontiguousarray(stretch[:, 0]),
+            high=np.ascontiguousarray(stretch[:, 1]),
+        )
+
+    @cached_property
+    def _lit(self) -> tuple[StripTree, tuple[NDArray[np.int32], Floats]]:
+        t = self._tracing
+        view = t.trace.plan
+        cell = int(np.searchsorted(view.cell_edges, self._near, side="right")) - 1
+        budget = t.config.max_reflections - int(self._legs_in.order[0])
+        strips = grow_strips(view, t.bounces, self._near, cell, budget)
+        return strips, hit_from_strip(strips, t.targets)
+
+    def add_to(self, sums: Sums, record: Record) -> None:
+        """See `Family`."""
+        if len(self._legs_in.order):
+            source, (strips, lit) = (self._tracing.tree, self._legs_in), self._lit
+            sum_level_edge(self._tracing.trace, self._rim, source, strips, lit, sums, record)
+
+    def receivers_of(self, record: Record) -> NDArray[np.int64]:
+        """See `Family`."""
+        return _receivers(self._lit[1][0], record)
+
+    def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
+        """See `Family`."""
+        source, (strips, lit) = (self._tracing.tree, self._legs_in), self._lit
+        level_points(self._tracing.trace, self._rim, source, strips, lit, record, points, kinds)
+
+
+def _receivers(hits: NDArray[np.int32], record: Record) -> NDArray[np.int64]:
+    return hits[record.key[: record.used[0], 0], 0].astype(np.int64)
+
+
+def all_families(tracing: Tracing) -> list[Family]:
+    """Return the families that together hold every path of a trace, each path once."""
+    families: list[Family] = [Reflections(tracing)]
+    if tracing.config.max_diffractions:
+        families += [OverUprightEdge(tracing, e) for e in tracing.scene.upright_edges]
+        families += [
+            OverLevelEdge(tracing, e, side) for e in tracing.scene.level_edges for side in (0, 1)
+        ]
+    return families

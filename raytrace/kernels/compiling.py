@@ -1,0 +1,57 @@
+"""How the kernels are compiled, and where the machine code is kept.
+
+Numba's cache notices a change of the file that holds a function, but not of a function that
+it calls in another file. So the cache folder carries a hash of all kernel sources.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+FAST = {"nsz", "arcp", "contract", "afn"}
+"""Floating-point freedoms of the field kernels: none that assumes away infinities."""
+
+
+def _use_own_cache() -> None:
+    """Point numba at a cache folder of this version, unless the user has chosen one."""
+    if os.environ.get("NUMBA_CACHE_DIR"):
+        return
+    digest = hashlib.sha256(numba.__version__.encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    folder = root / "rssnav" / "kernels" / digest.hexdigest()[:16]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        folder = Path(tempfile.gettempdir()) / f"rssnav-kernels-{digest.hexdigest()[:16]}"
+    numba.config.CACHE_DIR = str(folder)
+
+
+_use_own_cache()
+
+
+def jit(*, inline: str = "never", fast: bool = False) -> Callable[[Function], Function]:
+    """Compile a kernel: cached, without the interpreter lock, divisions as in C.
+
+    Parameters
+    ----------
+    inline
+        "always" for the small functions of inner loops.
+    fast
+        Allow `FAST` in place of strict IEEE arithmetic.
+    """
+    return numba.njit(
+        cache=True,
+        nogil=True,
+        inline=inline,
+        error_model="numpy",
+        fastmath=FAST if fast else False,
+    )

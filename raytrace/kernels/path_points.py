@@ -1,0 +1,205 @@
+"""The points of single paths, in three dimensions."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raytrace.kernels.beams import Tree
+from raytrace.kernels.compiling import jit
+from raytrace.kernels.level_edges import Rim, RimLegsIn, Work, unfold_over_rim
+from raytrace.kernels.plan_view import Floats, folded
+from raytrace.kernels.strips import StripTree
+from raytrace.kernels.tracing import Record, Trace
+from raytrace.kernels.unfolding import (
+    DISTANCE,
+    ITEM_X,
+    ITEM_Y,
+    KIND,
+    PASS_PARTIAL,
+    Leg,
+    image_heights,
+    most_items,
+    new_leg,
+    unfold,
+)
+from raytrace.kernels.upright_edges import Edge, LegsIn
+
+NOTHING, REFLECTION, DIFFRACTION = 0, 1, 2
+"""Interactions, as in `Paths.interactions`."""
+
+
+@jit()
+def add_point(
+    points: Floats, kinds: NDArray[np.int8], k: int, kind: int, at: tuple[float, float, float]
+) -> int:
+    """Append a point that is not the first one; return how many there are now."""
+    points[k, 0], points[k, 1], points[k, 2] = at
+    kinds[k - 1] = kind
+    return k + 1
+
+
+@jit()
+def add_leg(
+    leg: Leg,
+    n: int,
+    length: float,
+    heights: tuple[float, float, float],
+    end: tuple[float, float],
+    points: Floats,
+    kinds: NDArray[np.int8],
+    k: int,
+) -> int:
+    """Append the reflections of a leg, walls and slabs in their order.
+
+    Parameters
+    ----------
+    leg, n, length
+        The leg, its items, its horizontal length [m].
+    heights
+        Unfolded height at its root [m], slope, and height of the ceiling [m].
+    end
+        Where it ends in the plan view [m]; `points[k - 1]` is where it begins.
+    points, kinds, k
+        Written to from k on.
+
+    Returns
+    -------
+    int
+        How many points there are now.
+    """
+    z_root, slope, height = heights
+    done, x, y = 0.0, points[k - 1, 0], points[k - 1, 1]
+    storey = math.floor(z_root / height) + (1.0 if slope > 0.0 else 0.0)
+    for item in range(n + 1):
+        last = item == n
+        distance = length if last else leg.items[item, DISTANCE]
+        to_x = end[0] if last else leg.items[item, ITEM_X]
+        to_y = end[1] if last else leg.items[item, ITEM_Y]
+        while slope != 0.0 and (storey * height - z_root) / slope < distance:
+            w = ((storey * height - z_root) / slope - done) / (distance - done)
+            z = height if int(storey) & 1 else 0.0
+            k = add_point(points, kinds, k, REFLECTION, (x + w * (to_x - x), y + w * (to_y - y), z))
+            storey += 1.0 if slope > 0.0 else -1.0
+        if not last and leg.marks[item, KIND] != PASS_PARTIAL:
+            z = folded(z_root + slope * distance, height)
+            k = add_point(points, kinds, k, REFLECTION, (to_x, to_y, z))
+        done, x, y = distance, to_x, to_y
+    return k
+
+
+@jit()
+def start_path(trace: Trace, points: Floats, kinds: NDArray[np.int8]) -> int:
+    """Write the source as the first point."""
+    points[:] = 0.0
+    kinds[:] = NOTHING
+    points[0] = trace.source
+    return 1
+
+
+@jit()
+def finish_path(trace: Trace, r: int, points: Floats, k: int) -> None:
+    """Write the receiver as the last point, and again behind it."""
+    points[k:, 0], points[k:, 1] = trace.receivers[r, 0], trace.receivers[r, 1]
+    points[k:, 2] = trace.image_z[trace.level[r], 0]
+
+
+@jit()
+def reflection_points(
+    trace: Trace,
+    tree: Tree,
+    hits: NDArray[np.int32],
+    record: Record,
+    points: Floats,
+    kinds: NDArray[np.int8],
+) -> None:
+    """Points (n, most, 3) and interactions (n, most - 2) of recorded reflection paths."""
+    leg = new_leg(most_items(tree.link))
+    z = trace.source[2]
+    for path in range(record.used[0]):
+        r, i = hits[record.key[path, 0], 0], hits[record.key[path, 0], 1]
+        end = (trace.receivers[r, 0], trace.receivers[r, 1])
+        n, length, _, _ = unfold(trace.plan, tree.link, tree.beam, i, end, leg)
+        slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / length
+        k = start_path(trace, points[path], kinds[path])
+        heights = (z, slope, trace.radio.height)
+        k = add_leg(leg, n, length, heights, end, points[path], kinds[path], k)
+        finish_path(trace, r, points[path], k)
+
+
+@jit()
+def upright_points(
+    trace: Trace,
+    edge: Edge,
+    legs_in: LegsIn,
+    tree: Tree,
+    hits: NDArray[np.int32],
+    record: Record,
+    points: Floats,
+    kinds: NDArray[np.int8],
+) -> None:
+    """Points and interactions of recorded paths over a vertical edge."""
+    leg = new_leg(most_items(tree.link))
+    z, height = trace.source[2], trace.radio.height
+    for path in range(record.used[0]):
+        hit, p = record.key[path, 0], record.key[path, 1]
+        r, i = hits[hit, 0], hits[hit, 1]
+        end = (trace.receivers[r, 0], trace.receivers[r, 1])
+        n, length, _, _ = unfold(trace.plan, tree.link, tree.beam, i, end, leg)
+        length_in = legs_in.length[p]
+        slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / (length_in + length)
+        z_edge = z + slope * length_in
+        row, kind = points[path], kinds[path]
+        k = start_path(trace, row, kind)
+        leg_in = Leg(legs_in.items[p], legs_in.marks[p])
+        at = (edge.x, edge.y)
+        k = add_leg(leg_in, legs_in.n_items[p], length_in, (z, slope, height), at, row, kind, k)
+        k = add_point(row, kind, k, DIFFRACTION, (edge.x, edge.y, folded(z_edge, height)))
+        k = add_leg(leg, n, length, (z_edge, slope, height), end, row, kind, k)
+        finish_path(trace, r, row, k)
+
+
+@jit()
+def level_points(
+    trace: Trace,
+    rim: Rim,
+    source: tuple[Tree, RimLegsIn],
+    strips: StripTree,
+    lit: tuple[NDArray[np.int32], Floats],
+    record: Record,
+    points: Floats,
+    kinds: NDArray[np.int8],
+) -> None:
+    """Points and interactions of recorded paths over a level edge."""
+    tree, legs_in = source
+    hits, seen = lit
+    work = Work(
+        new_leg(most_items(tree.link)), new_leg(most_items(strips.link)),
+        np.empty((len(strips.link), 2)), np.empty(6), np.empty(6),
+    )  # fmt: skip
+    height, frame = trace.radio.height, rim.frame
+    z_in, bounces = image_heights(trace.source[2], height, trace.max_order)
+    for path in range(record.used[0]):
+        hit, p, a, b = record.key[path]
+        r, i = hits[hit, 0], hits[hit, 1]
+        rise_in = rim.z - z_in[a]
+        rise_out = trace.image_z[trace.level[r], b] - rim.z
+        in_, out = math.hypot(legs_in.h[p], rise_in), math.hypot(seen[hit, 1], rise_out)
+        u = (legs_in.x[p] * out + seen[hit, 0] * in_) / (in_ + out)
+        (n_in, length_in, _, _), (n, length, _, _) = unfold_over_rim(
+            trace, rim, u, (tree, strips), (legs_in.beam[p], i), r, work
+        )
+        at = (
+            frame[0] * (u - frame[2]) - frame[3] * frame[5],
+            frame[1] * (u - frame[2]) - frame[4] * frame[5],
+        )
+        slope = (-rise_in if bounces[a] & 1 else rise_in) / length_in
+        row, kind = points[path], kinds[path]
+        k = start_path(trace, row, kind)
+        heights = (trace.source[2], slope, height)
+        k = add_leg(work.leg_in, n_in, length_in, heights, at, row, kind, k)
+        k = add_point(row, kind, k, DIFFRACTION, (at[0], at[1], rim.z))
+        end = (trace.receivers[r, 0], trace.receivers[r, 1])
+        heights = (rim.z, rise_out / length, height)
+        k = add_leg(work.leg_out, n, length, heights, end, row, kind, k)
+        finish_path(trace, r, row, k)

@@ -1,0 +1,89 @@
+"""The plan view's arrays, and the questions every kernel asks of them."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raytrace.kernels.compiling import jit
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+WALL, PARTIAL, PORTAL = 0, 1, 2
+"""Kinds of cell edges: solid at every height, open at some, open at all."""
+
+
+class PlanView(NamedTuple):
+    """Convex cells of the plan view and their edges, counter-clockwise.
+
+    Attributes
+    ----------
+    cell_edges
+        (n_cells + 1,) edges of cell c are cell_edges[c]:cell_edges[c + 1].
+    ends
+        (n_edges, 4) start x, y and end x, y [m].
+    vertex
+        (n_edges, 2) numbers of the end points.
+    plane
+        (n_edges, 3) unit normal and offset of the edge's line, n . p = d [m].
+    line
+        (n_edges,) number that collinear edges share.
+    kind
+        (n_edges,) WALL, PARTIAL or PORTAL.
+    profile
+        (n_edges,) what stands on the edge over the height, -1 for a portal.
+    twin, beyond
+        (n_edges,) the same edge seen from the other cell, and that cell; -1 where there is none.
+    profile_bins
+        (n_profiles + 1,) height intervals of profile p are profile_bins[p]:profile_bins[p + 1].
+    bin_top, bin_material
+        Upper height [m] and material of each interval; material -1 is open.
+    """
+
+    cell_edges: Ints
+    ends: Floats
+    vertex: Ints
+    plane: Floats
+    line: Ints
+    kind: Ints
+    profile: Ints
+    twin: Ints
+    beyond: Ints
+    profile_bins: Ints
+    bin_top: Floats
+    bin_material: Ints
+
+
+@jit(inline="always")
+def cross(ax: float, ay: float, bx: float, by: float) -> float:
+    """Third component of a x b; positive where b lies to the left of a."""
+    return ax * by - ay * bx
+
+
+@jit(inline="always")
+def mirrored(x: float, y: float, line: Floats) -> tuple[float, float]:
+    """Image of a point in a line (n_x, n_y, d)."""
+    t = 2.0 * (line[0] * x + line[1] * y - line[2])
+    return x - t * line[0], y - t * line[1]
+
+
+@jit(inline="always")
+def folded(z: float, height: float) -> float:
+    """Height in the building of an unfolded height: reflections at floor and ceiling undone."""
+    storeys = math.floor(z / height)
+    rest = z - storeys * height
+    if int(storeys) & 1:
+        return height - rest
+    return rest
+
+
+@jit(inline="always")
+def material_at(view: PlanView, profile: int, z: float) -> int:
+    """Material of a profile at height z, -1 where it is open."""
+    k = view.profile_bins[profile]
+    last = view.profile_bins[profile + 1] - 1
+    while k < last and z > view.bin_top[k]:
+        k += 1
+    return view.bin_material[k]

@@ -1,0 +1,255 @@
+"""Beam trees from a level edge: a whole segment as the root.
+
+In the frame of the edge (x along it, h away from it into the cell) a ray of the plan view is a
+point (u, m): it leaves at x = u with x = u + m h. The rays that pass between two corners form a
+convex polygon there, which is clipped exactly (docs/theory.md, section 6).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raytrace.kernels.beams import (
+    BOUNCES,
+    CELL,
+    EDGE,
+    ITEMS,
+    ORDER,
+    PARENT,
+    REFLECTED,
+    Targets,
+    enlarged,
+)
+from raytrace.kernels.compiling import jit
+from raytrace.kernels.plan_view import Floats, Ints, PlanView
+
+STEEPEST = 1e5
+"""Largest |m| of a ray that leaves a level edge."""
+
+SLIVER_M = 1e-10
+"""Narrowest stretch of an edge that is followed [m]."""
+
+
+class StripTree(NamedTuple):
+    """Beams from a segment.
+
+    Attributes
+    ----------
+    link
+        (n, 8) int32, as in `beams.Tree`; FLIPPED is not used.
+    frame
+        (n, 7) x = f[0] X + f[1] Y + f[2] and h = f[3] X + f[4] Y + f[5] of a point of the beam's
+        cell; f[6] is -1 where the frame is mirrored, else 1.
+    first
+        (n + 1,) corners of beam i's polygon are rays[first[i]:first[i + 1]].
+    rays
+        (m, 2) corners (u [m], m [1]).
+    """
+
+    link: NDArray[np.int32]
+    frame: Floats
+    first: Ints
+    rays: Floats
+
+
+@jit()
+def edge_frame(view: PlanView, e: int) -> Floats:
+    """Frame (7,) of an edge of the plan view, h into its cell."""
+    x1, y1, x2, y2 = view.ends[e, 0], view.ends[e, 1], view.ends[e, 2], view.ends[e, 3]
+    length = np.hypot(x2 - x1, y2 - y1)
+    tx, ty = (x2 - x1) / length, (y2 - y1) / length
+    frame = np.empty(7)
+    frame[0], frame[1], frame[2] = tx, ty, -(tx * x1 + ty * y1)
+    frame[3], frame[4], frame[5] = -ty, tx, ty * x1 - tx * y1
+    frame[6] = 1.0
+    return frame
+
+
+@jit(inline="always")
+def in_frame(frame: Floats, x: float, y: float) -> tuple[float, float]:
+    """(x, h) of a point."""
+    return (
+        frame[0] * x + frame[1] * y + frame[2],
+        frame[3] * x + frame[4] * y + frame[5],
+    )
+
+
+@jit()
+def clipped(rays: Floats, n: int, x: float, h: float, sign: float, out: Floats) -> int:
+    """Keep the rays with sign (x - u - m h) >= 0; write them to `out`, return how many corners."""
+    kept = 0
+    for i in range(n):
+        j = i + 1 if i + 1 < n else 0
+        here = sign * (x - rays[i, 0] - rays[i, 1] * h)
+        there = sign * (x - rays[j, 0] - rays[j, 1] * h)
+        if here >= 0.0:
+            out[kept] = rays[i]
+            kept += 1
+        if (here > 0.0 and there < 0.0) or (here < 0.0 and there > 0.0):
+            t = here / (here - there)
+            out[kept, 0] = rays[i, 0] + t * (rays[j, 0] - rays[i, 0])
+            out[kept, 1] = rays[i, 1] + t * (rays[j, 1] - rays[i, 1])
+            kept += 1
+    return kept
+
+
+@jit(inline="always")
+def is_sliver(rays: Floats, n: int) -> bool:
+    """Whether a polygon of rays is too thin to be followed."""
+    if n < 3:
+        return True
+    low = high = rays[0, 0]
+    area = 0.0
+    for i in range(n):
+        j = i + 1 if i + 1 < n else 0
+        area += rays[i, 0] * rays[j, 1] - rays[j, 0] * rays[i, 1]
+        low, high = min(low, rays[i, 0]), max(high, rays[i, 0])
+    return abs(area) < 1e-13 or high - low < SLIVER_M
+
+
+@jit()
+def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, out: Floats) -> int:
+    """Clip beam i to the part that meets edge e; corners to `out`, return how many, 0 if none."""
+    frame = tree.frame[i]
+    x1, h1 = in_frame(frame, view.ends[e, 0], view.ends[e, 1])
+    x2, h2 = in_frame(frame, view.ends[e, 2], view.ends[e, 3])
+    if h1 <= 1e-9 and h2 <= 1e-9:
+        return 0
+    n = tree.first[i + 1] - tree.first[i]
+    out[:n] = tree.rays[tree.first[i] : tree.first[i + 1]]
+    if h1 > 1e-9:
+        work[:n] = out[:n]
+        n = clipped(work, n, x1, h1, frame[6], out)
+    if h2 > 1e-9 and n >= 3:
+        work[:n] = out[:n]
+        n = clipped(work, n, x2, h2, -frame[6], out)
+    return 0 if is_sliver(out, n) else n
+
+
+@jit(inline="always")
+def mirror_frame(frame: Floats, line: Floats) -> None:
+    """Change a frame to that of the beam mirrored at a line."""
+    nx, ny, d = line[0], line[1], line[2]
+    for k in (0, 3):
+        along = 2.0 * (frame[k] * nx + frame[k + 1] * ny)
+        frame[k] -= along * nx
+        frame[k + 1] -= along * ny
+        frame[k + 2] += along * d
+    frame[6] = -frame[6]
+
+
+@jit()
+def grow_strips(
+    view: PlanView, bounces: Ints, root: int, root_cell: int, max_order: int
+) -> StripTree:
+    """All beams from one side of an edge, with at most `max_order` reflections.
+
+    Parameters
+    ----------
+    view, bounces
+        As for `beams.grow_tree`.
+    root, root_cell
+        The edge, as seen from the cell that the beams go into.
+    max_order
+        Most reflections.
+    """
+    link = np.zeros((256, 8), np.int32)
+    frame = np.empty((256, 7))
+    first = np.zeros((257, 1), np.int64)
+    rays = np.empty((4096, 2))
+    work, out = np.empty((256, 2)), np.empty((256, 2))
+    link[0, PARENT], link[0, EDGE], link[0, CELL] = -1, root, root_cell
+    frame[0] = edge_frame(view, root)
+    length, _ = in_frame(frame[0], view.ends[root, 2], view.ends[root, 3])
+    rays[0, 0], rays[1, 0], rays[2, 0], rays[3, 0] = 0.0, length, length, 0.0
+    rays[0, 1] = rays[1, 1] = -STEEPEST
+    rays[2, 1] = rays[3, 1] = STEEPEST
+    first[1, 0] = 4
+    n = 1
+    i = 0
+    while i < n:
+        cell = link[i, CELL]
+        tree = StripTree(link, frame, first[:, 0], rays)
+        for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
+            if view.line[e] == view.line[link[i, EDGE]]:
+                continue
+            corners = through_edge(view, tree, i, e, work, out)
+            if corners == 0:
+                continue
+            for way in range(2):
+                needed = max(link[i, BOUNCES], bounces[e, way])
+                possible = view.beyond[e] >= 0 if way == 0 else view.profile[e] >= 0
+                if not possible or link[i, ORDER] + way + needed > max_order:
+                    continue
+                while n + 2 > len(link):
+                    link, frame, first = enlarged(link), enlarged(frame), enlarged(first)
+                while first[n, 0] + corners > len(rays):
+                    rays = enlarged(rays)
+                link[n], frame[n] = link[i], frame[i]
+                link[n, PARENT], link[n, EDGE], link[n, REFLECTED] = i, e, way
+                link[n, BOUNCES] = needed
+                link[n, ORDER] += way
+                if view.profile[e] >= 0:
+                    link[n, ITEMS] += 1
+                if way == 0:
+                    link[n, CELL] = view.beyond[e]
+                else:
+                    mirror_frame(frame[n], view.plane[e])
+                rays[first[n, 0] : first[n, 0] + corners] = out[:corners]
+                first[n + 1, 0] = first[n, 0] + corners
+                n += 1
+                tree = StripTree(link, frame, first[:, 0], rays)
+        i += 1
+    return StripTree(
+        link[:n].copy(), frame[:n].copy(), first[: n + 1, 0].copy(), rays[: first[n, 0]].copy()
+    )
+
+
+@jit()
+def hit_from_strip(tree: StripTree, targets: Targets) -> tuple[NDArray[np.int32], Floats]:
+    """Points that beams from a segment light.
+
+    Returns
+    -------
+    hits
+        (n, 2) int32 point and beam.
+    seen
+        (n, 4) the point as (x, h) in the edge's frame, and the stretch of the edge that sees it
+        [m].
+    """
+    hits = np.empty((1024, 2), np.int32)
+    seen = np.empty((1024, 4))
+    n = 0
+    for i in range(len(tree.link)):
+        cell = tree.link[i, CELL]
+        for k in range(targets.cell_points[cell], targets.cell_points[cell + 1]):
+            point = targets.number[k]
+            x, h = in_frame(tree.frame[i], targets.xy[point, 0], targets.xy[point, 1])
+            if h <= 1e-9:
+                continue
+            low, high = stretch_through(tree.rays[tree.first[i] : tree.first[i + 1]], x, h)
+            if high - low <= SLIVER_M:
+                continue
+            if n == len(hits):
+                hits, seen = enlarged(hits), enlarged(seen)
+            hits[n, 0], hits[n, 1] = point, i
+            seen[n, 0], seen[n, 1], seen[n, 2], seen[n, 3] = x, h, low, high
+            n += 1
+    return hits[:n].copy(), seen[:n].copy()
+
+
+@jit(inline="always")
+def stretch_through(rays: Floats, x: float, h: float) -> tuple[float, float]:
+    """Smallest and largest u of the rays of a polygon through (x, h); empty if low > high."""
+    low, high = 1e300, -1e300
+    n = len(rays)
+    before = rays[n - 1, 0] + rays[n - 1, 1] * h - x
+    for j in range(n):
+        here = rays[j, 0] + rays[j, 1] * h - x
+        if (here >= 0.0) != (before >= 0.0):
+            t = before / (before - here)
+            u = rays[j - 1, 0] + t * (rays[j, 0] - rays[j - 1, 0])
+            low, high = min(low, u), max(high, u)
+        before = here
+    return low, high

@@ -1,0 +1,154 @@
+"""Diffraction at a wedge: the uniform theory of Kouyoumjian and Pathak (1974), for slabs.
+
+The coefficient's four cotangent terms (their eqs. 25-33) keep the perfect conductor's form; the two
+that belong to reflections are multiplied by the slab's reflection coefficient, after Luebbers
+(1984), at the angle whose sine to the face is sqrt(|sin phi sin phi'|), which unlike his is
+the same in both directions of the path (docs/theory.md, eq. 21).
+"""
+
+import math
+from typing import NamedTuple
+
+from raytrace.kernels.compiling import jit
+from raytrace.kernels.field import Radio, both_reflections
+from raytrace.kernels.plan_view import Floats
+
+TRANSITION_MAX = 12.0
+"""Largest s of the table of F(s^2) / s; beyond it the asymptotic series is used."""
+
+TRANSITION_STEPS = 6000
+
+COSINE_HALF, SINE_HALF, COSINE_WEDGE, SINE_WEDGE, ROOT_O, ROOT_N = range(6)
+"""Columns of `wedge_angles`: cosine and sine of phi / 2 and of phi / 2n, and the roots of
+|sin phi| and |sin(n pi - phi)|."""
+
+
+class Wedge(NamedTuple):
+    """A wedge in the plane across its edge.
+
+    Attributes
+    ----------
+    n
+        Free angle over pi.
+    o_slab, n_slab
+        Slabs of its faces.
+    """
+
+    n: float
+    o_slab: int
+    n_slab: int
+
+
+class WedgeTerms(NamedTuple):
+    """The four terms of a pair of directions: cotangents / and |cos| of the transition angles.
+
+    Terms 0 and 1 belong to phi - phi', 2 (n-face) and 3 (o-face) to phi + phi'.
+    """
+
+    cotangent: tuple[float, float, float, float]
+    detour: tuple[float, float, float, float]
+    o_cosine: float
+    n_cosine: float
+
+
+@jit(inline="always", fast=True)
+def transition(table: Floats, s: float) -> complex:
+    """F(s^2)."""
+    if s >= TRANSITION_MAX:
+        x = s * s
+        return complex(1.0 - 0.75 / (x * x), 0.5 / x)
+    t = s * (TRANSITION_STEPS / TRANSITION_MAX)
+    k = int(t)
+    w = t - k
+    v = 1.0 - w
+    return complex(
+        (table[k, 0] * v + table[k + 1, 0] * w) * s, (table[k, 1] * v + table[k + 1, 1] * w) * s
+    )
+
+
+@jit(inline="always", fast=True)
+def cotangent(sine: float, cosine: float) -> float:
+    """Cosine / sine, finite at a shadow boundary, where F makes up for it."""
+    if abs(sine) < 1e-13:
+        sine = 1e-13
+    return cosine / sine
+
+
+@jit(inline="always", fast=True)
+def detour(n: float, beta: float, cos_half: float, sin_half: float, sign: float) -> float:
+    """|cos((2 pi n N - beta) / 2)|, N the integer nearest to (sign pi + beta) / (2 pi n)."""
+    turns = math.floor((sign * math.pi + beta) / (2.0 * math.pi * n) + 0.5)
+    if turns == 0.0:
+        return abs(cos_half)
+    angle = n * math.pi * turns
+    return abs(math.cos(angle) * cos_half + math.sin(angle) * sin_half)
+
+
+@jit(fast=True)
+def wedge_terms(n: float, phi: float, at: Floats, phi_source: float, source: Floats) -> WedgeTerms:
+    """Terms of one pair of directions.
+
+    Parameters
+    ----------
+    n
+        Free angle over pi.
+    phi, phi_source
+        Angles of the diffracted and of the incident ray from the o-face [rad].
+    at, source
+        (6,) their `wedge_angles`.
+    """
+    sp, cp = math.sin(math.pi / (2.0 * n)), math.cos(math.pi / (2.0 * n))
+    ch, sh = at[COSINE_WEDGE], at[SINE_WEDGE]
+    gh, fh = source[COSINE_WEDGE], source[SINE_WEDGE]
+    cos_minus, sin_minus = ch * gh + sh * fh, sh * gh - ch * fh
+    cos_plus, sin_plus = ch * gh - sh * fh, sh * gh + ch * fh
+    cotangents = (
+        cotangent(sp * cos_minus + cp * sin_minus, cp * cos_minus - sp * sin_minus),
+        cotangent(sp * cos_minus - cp * sin_minus, cp * cos_minus + sp * sin_minus),
+        cotangent(sp * cos_plus + cp * sin_plus, cp * cos_plus - sp * sin_plus),
+        cotangent(sp * cos_plus - cp * sin_plus, cp * cos_plus + sp * sin_plus),
+    )
+    ch, sh, gh, fh = at[COSINE_HALF], at[SINE_HALF], source[COSINE_HALF], source[SINE_HALF]
+    cos_minus, sin_minus = ch * gh + sh * fh, sh * gh - ch * fh
+    cos_plus, sin_plus = ch * gh - sh * fh, sh * gh + ch * fh
+    minus, plus = phi - phi_source, phi + phi_source
+    detours = (
+        detour(n, minus, cos_minus, sin_minus, 1.0),
+        detour(n, minus, cos_minus, sin_minus, -1.0),
+        detour(n, plus, cos_plus, sin_plus, 1.0),
+        detour(n, plus, cos_plus, sin_plus, -1.0),
+    )
+    return WedgeTerms(cotangents, detours, at[ROOT_O] * source[ROOT_O], at[ROOT_N] * source[ROOT_N])
+
+
+@jit(inline="always", fast=True)
+def diffraction(
+    radio: Radio, wedge: Wedge, terms: WedgeTerms, spread: float, sin_beta: float
+) -> tuple[complex, complex]:
+    """Soft and hard coefficient, without their common factor (see `common_factor`).
+
+    Parameters
+    ----------
+    radio, wedge, terms
+        Tables, the wedge's faces, and the pair of directions.
+    spread
+        sqrt(2 k L), L the distance parameter [1].
+    sin_beta
+        Sine of the angle between ray and edge.
+    """
+    cot, bend = terms.cotangent, terms.detour
+    incident = cot[0] * transition(radio.transition, spread * bend[0]) + cot[1] * transition(
+        radio.transition, spread * bend[1]
+    )
+    n_term = cot[2] * transition(radio.transition, spread * bend[2])
+    o_term = cot[3] * transition(radio.transition, spread * bend[3])
+    n_tm, n_te = both_reflections(radio.slabs, wedge.n_slab, min(terms.n_cosine * sin_beta, 1.0))
+    o_tm, o_te = both_reflections(radio.slabs, wedge.o_slab, min(terms.o_cosine * sin_beta, 1.0))
+    return incident + n_te * n_term + o_te * o_term, incident + n_tm * n_term + o_tm * o_term
+
+
+@jit(inline="always")
+def common_factor(n: float, wavelength: float) -> complex:
+    """-exp(-j pi / 4) / (2 n sqrt(2 pi k)); the division by sin beta is the caller's."""
+    size = math.sqrt(wavelength) / (4.0 * math.pi * n)
+    return complex(-size * math.sqrt(0.5), size * math.sqrt(0.5))

@@ -1,0 +1,111 @@
+"""A scene, a source and receivers made ready for the kernels."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raytrace.antennas import Antenna
+from raytrace.errors import SceneError
+from raytrace.grid import TraceConfig
+from raytrace.kernels.beams import Targets, Tree, grow_tree, hit_corners, hit_partial_walls
+from raytrace.kernels.tracing import Trace
+from raytrace.kernels.unfolding import image_heights
+from raytrace.locating import bounces_needed, cells_of, targets_in
+from raytrace.scene import Scene
+from raytrace.tables import make_radio
+from raytrace.transmitter import Transmitter
+
+Floats = NDArray[np.float64]
+
+TIE_OFFSET_M = (1.234e-5, 0.789e-5)
+"""Where the transmitter is taken to stand, from its place [m]. On plans drawn on a lattice many
+rays would run exactly through corners; so far off, none does, and every path is on one side of
+every edge. The coherent field does not feel it (docs/conventions.md, "Ties")."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tracing:
+    """A scene with one source and its receivers, prepared for the kernels.
+
+    Attributes
+    ----------
+    scene, config
+        What is traced, and how far.
+    trace
+        The kernels' constants.
+    targets
+        The receivers, cell by cell.
+    bounces
+        (n_edges, 2) see `locating.bounces_needed`.
+    tree
+        Beams from the source.
+    corners
+        (n, 2) corners of the plan view that beams of the source light.
+    rims, stretches
+        (n, 2), (n, 2) partial walls that beams of the source light, and which part of them.
+    """
+
+    scene: Scene
+    config: TraceConfig
+    trace: Trace
+    targets: Targets
+    bounces: NDArray[np.int64]
+    tree: Tree
+    corners: NDArray[np.int32]
+    rims: NDArray[np.int32]
+    stretches: Floats
+
+
+def prepare(
+    scene: Scene,
+    source: Transmitter,
+    receivers: Floats,
+    config: TraceConfig,
+    receive_antenna: Antenna | None = None,
+) -> Tracing:
+    """Grow the beams from the source and make the tables.
+
+    Parameters
+    ----------
+    scene, source, config
+        What is traced, from where, and how far.
+    receivers
+        (n, 3) positions [m]; those outside the building are reached by no path.
+    receive_antenna
+        The receivers' antenna; a half-wave dipole of 0 dB peak gain by default.
+    """
+    view = scene.view
+    x, y = source.position[0] + TIE_OFFSET_M[0], source.position[1] + TIE_OFFSET_M[1]
+    z = source.position[2]
+    root = cells_of(view, np.array([[x, y]]))
+    if root[0] < 0 or not 0.0 < z < scene.height_m:
+        raise SceneError(
+            f"the transmitter at {source.position} is not inside the building: "
+            f"expected a place on its floor and a height between 0 and {scene.height_m:g} m"
+        )
+    heights, level = np.unique(receivers[:, 2], return_inverse=True)
+    trace = Trace(
+        plan=view,
+        radio=make_radio(
+            source, scene.slabs, height_m=scene.height_m, floor=scene.floor_material,
+            ceiling=scene.ceiling_material, receive_antenna=receive_antenna,
+        ),
+        source=np.array([x, y, z]),
+        receivers=np.ascontiguousarray(receivers[:, :2]),
+        level=level.astype(np.int64),
+        image_z=np.array(
+            [image_heights(h, scene.height_m, config.max_reflections)[0] for h in heights]
+        ).reshape(len(heights), -1),
+        image_bounces=image_heights(0.0, 1.0, config.max_reflections)[1],
+        max_order=config.max_reflections,
+    )  # fmt: skip
+    band = [z, *heights, *(e.z for e in scene.level_edges)]
+    bounces = bounces_needed(view, min(band), max(band))
+    tree = grow_tree(view, bounces, x, y, root, config.max_reflections)
+    rims, stretches = hit_partial_walls(view, tree)
+    inside = (receivers[:, 2] > 0.0) & (receivers[:, 2] < scene.height_m)
+    return Tracing(
+        scene, config, trace, targets_in(view, trace.receivers, inside), bounces, tree,
+        hit_corners(view, tree), rims, stretches,
+    )  # fmt: skip

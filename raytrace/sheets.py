@@ -1,0 +1,231 @@
+"""A wall mesh read as an extruded building: floor, ceiling, and upright panels.
+
+The tracer works on plans that are extruded: two horizontal slabs and vertical sheets between
+them. Triangles that lie in one plane are joined, so any triangulation of a building gives the
+same panels; a mesh that is not of this kind is refused with the faces that are at fault.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+import trimesh
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from raytrace.errors import SceneError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+PLANE_TOLERANCE_M = 1e-7
+"""Vertices this close to a plane lie in it [m]."""
+
+OPEN = -1
+"""Material of a height interval without a wall."""
+
+
+class Profile(NamedTuple):
+    """What a wall is made of over its height, from the floor to the ceiling.
+
+    `tops` are the upper heights [m] of the intervals, `materials` their material or `OPEN`.
+    """
+
+    tops: tuple[float, ...]
+    materials: tuple[int, ...]
+
+    @property
+    def is_full(self) -> bool:
+        """Whether one material fills the whole height."""
+        return len(self.materials) == 1 and self.materials[0] != OPEN
+
+    def at(self, z: float) -> int:
+        """Material at height z [m], or `OPEN`."""
+        return self.materials[min(int(np.searchsorted(self.tops, z)), len(self.tops) - 1)]
+
+
+class Panel(NamedTuple):
+    """An upright sheet over one straight piece of the plan: `start`, `end` (2,) [m]."""
+
+    start: Floats
+    end: Floats
+    plane: int
+    profile: Profile
+
+
+@dataclass(frozen=True)
+class Sheets:
+    """An extruded building.
+
+    Attributes
+    ----------
+    panels
+        Its walls; panels of one plane do not overlap.
+    planes
+        (n, 3) plan-view lines of the walls' planes: unit normal and offset, n . p = d [m].
+    footprint
+        What the floor covers (shapely, plan view) [m].
+    floor_z
+        Height of the floor in the mesh [m]; all other heights are above it.
+    height_m
+        From floor to ceiling [m].
+    floor_material, ceiling_material
+        Index into the material table.
+    """
+
+    panels: tuple[Panel, ...]
+    planes: Floats
+    footprint: BaseGeometry
+    floor_z: float
+    height_m: float
+    floor_material: int
+    ceiling_material: int
+
+
+def read_sheets(mesh: trimesh.Trimesh, face_material: Ints) -> Sheets:
+    """Read a mesh as floor, ceiling and panels.
+
+    Parameters
+    ----------
+    mesh
+        Vertical and horizontal triangles [m].
+    face_material
+        (n_faces,) index of each face's material.
+
+    Raises
+    ------
+    SceneError
+        For sloped faces, partial slabs, and sheets that are not rectangles on edge.
+    """
+    triangles = np.asarray(mesh.triangles, dtype=np.float64)
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    area2 = np.linalg.norm(normals, axis=1)
+    real = area2 > 1e-14
+    triangles, face_material = triangles[real], np.asarray(face_material)[real]
+    normals = normals[real] / area2[real, None]
+    upright = np.abs(normals[:, 2]) < 1e-9
+    level = np.abs(normals[:, 2]) > 1.0 - 1e-9
+    _refuse_sloped(~(upright | level), np.flatnonzero(real))
+    if not level.any():
+        raise SceneError("the mesh has no floor and no ceiling: expected two horizontal slabs")
+    floor_z, ceiling_z = triangles[level, :, 2].min(), triangles[level, :, 2].max()
+    footprint, floor = _slab(triangles, face_material, level, floor_z, "floor")
+    roof, ceiling = _slab(triangles, face_material, level, ceiling_z, "ceiling")
+    _refuse_partial_slabs(triangles, level, (floor_z, ceiling_z), np.flatnonzero(real))
+    if footprint.symmetric_difference(roof).area > 1e-6:
+        raise SceneError("floor and ceiling do not cover the same ground: not an extruded plan")
+    walls = triangles[upright] - np.array([0.0, 0.0, floor_z])
+    height = float(ceiling_z - floor_z)
+    if len(walls) and (walls[:, :, 2].min() < -1e-9 or walls[:, :, 2].max() > height + 1e-9):
+        raise SceneError("walls reach below the floor or above the ceiling")
+    planes, plane_of = _group_planes(walls, normals[upright][:, :2])
+    panels = tuple(
+        panel
+        for k in range(len(planes))
+        for panel in _panels_of_plane(
+            walls[plane_of == k], face_material[upright][plane_of == k], planes[k], k, height
+        )
+    )
+    return Sheets(panels, planes, footprint, float(floor_z), height, floor, ceiling)
+
+
+def _refuse_sloped(sloped: NDArray[np.bool_], index: Ints) -> None:
+    if sloped.any():
+        faces = ", ".join(map(str, index[sloped][:5]))
+        raise SceneError(
+            f"{sloped.sum()} faces are neither vertical nor horizontal (faces {faces}, ...): "
+            "the tracer works on extruded plans"
+        )
+
+
+def _refuse_partial_slabs(
+    triangles: Floats, level: NDArray[np.bool_], slabs_z: tuple[float, float], index: Ints
+) -> None:
+    off = np.min([np.abs(triangles[:, 0, 2] - z) for z in slabs_z], axis=0)
+    between = level & (off > 1e-9)
+    if between.any():
+        raise SceneError(
+            f"{between.sum()} horizontal faces lie between floor and ceiling "
+            f"(first: face {index[between][0]}): partial slabs are not supported"
+        )
+
+
+def _slab(
+    triangles: Floats, face_material: Ints, level: NDArray[np.bool_], z: float, what: str
+) -> tuple[BaseGeometry, int]:
+    """Footprint and material of the slab at height z."""
+    mine = level & (np.abs(triangles[:, :, 2] - z).max(axis=1) < 1e-9)
+    materials = np.unique(face_material[mine])
+    if len(materials) != 1:
+        raise SceneError(f"the {what} has {len(materials)} materials: expected one")
+    return shapely.union_all(shapely.polygons(triangles[mine][:, :, :2])), int(materials[0])
+
+
+def _group_planes(walls: Floats, normals: Floats) -> tuple[Floats, Ints]:
+    """Planes (n, 3) of the wall triangles, and which plane each lies in."""
+    plane_of = np.full(len(walls), -1, dtype=np.int64)
+    planes: list[tuple[float, float, float]] = []
+    for k in range(len(walls)):
+        if plane_of[k] >= 0:
+            continue
+        n = normals[k] if (normals[k, 0], normals[k, 1]) > (1e-12, 0.0) else -normals[k]
+        if abs(n[0]) <= 1e-12:
+            n = np.array([0.0, 1.0])
+        elif abs(n[1]) <= 1e-12:
+            n = np.array([1.0, 0.0])
+        offset = float(n @ walls[k, 0, :2])
+        off = np.abs(walls[:, :, :2] @ n - offset).max(axis=1)
+        plane_of[(off < PLANE_TOLERANCE_M) & (plane_of < 0)] = len(planes)
+        planes.append((float(n[0]), float(n[1]), offset))
+    return np.array(planes).reshape(-1, 3), plane_of
+
+
+def _panels_of_plane(
+    walls: Floats, materials: Ints, plane: Floats, index: int, height: float
+) -> Iterator[Panel]:
+    """Panels of the triangles of one plane: maximal stretches of one profile."""
+    along = walls[:, :, :2] @ np.array([-plane[1], plane[0]])
+    s, where = _distinct(along.ravel())
+    corners = walls[:, :, :2].reshape(-1, 2)[where]
+    z, _ = _distinct(np.concatenate([walls[:, :, 2].ravel(), [0.0, height]]))
+    filled = _fill(np.stack([along, walls[:, :, 2]], axis=2), materials, s, z, index)
+    profiles = [_profile(z[1:], column) for column in filled]
+    start = 0
+    for k in range(1, len(profiles) + 1):
+        if k < len(profiles) and profiles[k] == profiles[start]:
+            continue
+        if profiles[start].materials != (OPEN,):
+            yield Panel(corners[start], corners[k], index, profiles[start])
+        start = k
+
+
+def _fill(triangles: Floats, materials: Ints, s: Floats, z: Floats, plane: int) -> Ints:
+    """Material (len(s) - 1, len(z) - 1) of each rectangle of the plane, or `OPEN`."""
+    middle_s, middle_z = 0.5 * (s[1:] + s[:-1]), 0.5 * (z[1:] + z[:-1])
+    grid_s, grid_z = np.meshgrid(middle_s, middle_z, indexing="ij")
+    cell_area = np.outer(np.diff(s), np.diff(z))
+    filled = np.full(grid_s.shape, OPEN, dtype=np.int64)
+    for material in dict.fromkeys(materials.tolist()):
+        sheet = shapely.union_all(shapely.polygons(triangles[materials == material]))
+        inside = shapely.contains_xy(sheet, grid_s, grid_z)
+        if abs(cell_area[inside].sum() - sheet.area) > 1e-6:
+            raise SceneError(
+                f"the wall in plane {plane} is not made of rectangles on edge: its triangles "
+                f"cover {sheet.area:.6f} m2, the rectangles {cell_area[inside].sum():.6f} m2"
+            )
+        filled[inside & (filled == OPEN)] = material
+    return filled
+
+
+def _profile(tops: Floats, materials: Ints) -> Profile:
+    last = [k for k in range(len(tops)) if k + 1 == len(tops) or materials[k + 1] != materials[k]]
+    return Profile(tuple(float(tops[k]) for k in last), tuple(int(materials[k]) for k in last))
+
+
+def _distinct(values: Floats) -> tuple[Floats, Ints]:
+    """Sorted values more than 1e-9 apart, and where each stands in the input."""
+    order = np.argsort(values, kind="stable")
+    new = np.concatenate([[True], np.diff(values[order]) > 1e-9])
+    return values[order][new], order[new]

@@ -1,0 +1,75 @@
+"""The tables that the field kernels look up."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import fresnel
+
+from raytrace.antennas import Antenna, HalfWaveDipole
+from raytrace.kernels.field import Radio
+from raytrace.kernels.utd import TRANSITION_MAX, TRANSITION_STEPS
+from raytrace.materials import slab_tables
+from raytrace.transmitter import Transmitter
+
+Floats = NDArray[np.float64]
+
+CIS_STEPS = 256
+ANTENNA_STEPS = 8192
+
+
+def make_radio(
+    transmitter: Transmitter,
+    slabs: Sequence[tuple[str, float]],
+    *,
+    height_m: float,
+    floor: int,
+    ceiling: int,
+    receive_antenna: Antenna | None = None,
+) -> Radio:
+    """Tabulate everything of a trace that is not geometry."""
+    turn = np.arange(CIS_STEPS + 1) * (2.0 * np.pi / CIS_STEPS)
+    return Radio(
+        wavelength=transmitter.wavelength_m,
+        height=height_m,
+        floor=floor,
+        ceiling=ceiling,
+        slabs=slab_tables(slabs, transmitter.frequency_hz),
+        transition=transition_table(),
+        cis=np.column_stack([np.cos(turn), np.sin(turn)]),
+        transmit=antenna_table(transmitter.antenna),
+        receive=antenna_table(receive_antenna or HalfWaveDipole()),
+    )
+
+
+def antenna_table(antenna: Antenna) -> Floats:
+    """Tabulate an antenna's amplitude over the z component of the direction, -1 to 1."""
+    amplitude = antenna.amplitude(np.linspace(-1.0, 1.0, ANTENNA_STEPS + 1))
+    return np.append(amplitude, amplitude[-1])
+
+
+def transition_table() -> Floats:
+    """Tabulate F(s^2) / s over s (TRANSITION_STEPS + 2, 2), F of Kouyoumjian-Pathak eq. 27.
+
+    F(X) = 2 j sqrt(X) e^(jX) * integral of e^(-j t^2) from sqrt(X) to infinity. Divided by
+    sqrt(X) it is smooth at 0, where the cotangent it is multiplied with is singular.
+    """
+    s = np.arange(TRANSITION_STEPS + 2) * (TRANSITION_MAX / TRANSITION_STEPS)
+    sine, cosine = fresnel(s * np.sqrt(2.0 / np.pi))
+    tail = np.sqrt(np.pi / 2.0) * ((0.5 - cosine) - 1j * (0.5 - sine))
+    ratio = 2j * np.exp(1j * s**2) * tail
+    return np.column_stack([ratio.real, ratio.imag])
+
+
+def wedge_angles(phi: Floats, n: float) -> Floats:
+    """Functions (len(phi), 6) of the angles from the o-face [rad] that the terms are made of."""
+    return np.column_stack(
+        [
+            np.cos(phi / 2),
+            np.sin(phi / 2),
+            np.cos(phi / (2 * n)),
+            np.sin(phi / (2 * n)),
+            np.sqrt(np.abs(np.sin(phi))),
+            np.sqrt(np.abs(np.sin(n * np.pi - phi))),
+        ]
+    )
