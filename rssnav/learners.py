@@ -71,11 +71,11 @@ class LearningProblem:
         """Number S of cells."""
         return self.process.next_state.shape[0]
 
-    def learner(self, generator: NDArray[np.uint64], episodes: int) -> Learner:
-        """Begin a realisation of at most ``episodes``, drawing from a xoshiro256++ state (4,)."""
+    def learner(self, generators: NDArray[np.uint64], episodes: int) -> Learner:
+        """Begin a realisation of at most ``episodes`` from two xoshiro256++ states (8,)."""
         if self.states is None:
-            return TabularLearner(self, generator, episodes)
-        return SensedLearner(self, self.states, generator, episodes)
+            return TabularLearner(self, generators, episodes)
+        return SensedLearner(self, self.states, generators, episodes)
 
 
 def _has_a_row_per_cell(agent: RssAgent, world: GridWorld) -> bool:
@@ -115,7 +115,7 @@ def parameters_of(learning: QLearning) -> Parameters:
 def _new_run(
     problem: LearningProblem,
     q: NDArray[np.float64],
-    generator: NDArray[np.uint64],
+    generators: NDArray[np.uint64],
     episodes: int,
 ) -> Run:
     counters = np.zeros(common.N_COUNTERS, dtype=np.int64)
@@ -124,7 +124,8 @@ def _new_run(
     return Run(
         q=q.reshape(-1),
         visits=np.zeros(problem.n_states, dtype=np.int32),
-        generator=generator.copy(),
+        generator=generators[:4].copy(),
+        tie_generator=generators[4:].copy(),
         rates=np.array([learning.epsilon_max, learning.alpha_max]),
         counters=counters,
         episodes=np.empty((episodes, 3), dtype=np.int32),
@@ -135,7 +136,7 @@ class TabularLearner:
     """One row of Q per cell. Blocked actions are -inf unless the maximum runs over all."""
 
     def __init__(
-        self, problem: LearningProblem, generator: NDArray[np.uint64], episodes: int
+        self, problem: LearningProblem, generators: NDArray[np.uint64], episodes: int
     ) -> None:
         process, learning = problem.process, problem.learning
         self.moves = moves_of(process)
@@ -146,7 +147,7 @@ class TabularLearner:
         if not self.parameters.all_actions:
             q[self._blocked] = -np.inf
         q[process.terminal] = 0.0
-        self.run = _new_run(problem, q, generator, episodes)
+        self.run = _new_run(problem, q, generators, episodes)
         self.greedy = tabular.Greedy(
             value=np.empty(problem.n_states), action=np.empty(problem.n_states, dtype=np.uint8)
         )
@@ -155,7 +156,13 @@ class TabularLearner:
     def advance(self, until_episode: int) -> None:
         """Fly to ``until_episode``, or to the episode in which the run converges."""
         tabular.learn(
-            self.moves, self._reward, self.parameters, self.run, self.greedy, until_episode
+            self.moves,
+            self._reward,
+            self.parameters,
+            self.run,
+            self.greedy,
+            self.run.tie_generator if self.parameters.random_ties else None,
+            until_episode,
         )
 
     def cell_values(self) -> NDArray[np.float64]:
@@ -174,7 +181,7 @@ class SensedLearner:
         self,
         problem: LearningProblem,
         states: SensedStates,
-        generator: NDArray[np.uint64],
+        generators: NDArray[np.uint64],
         episodes: int,
     ) -> None:
         self._states = states
@@ -183,7 +190,7 @@ class SensedLearner:
         self._blocked = problem.process.next_state < 0
         self._initial_q = problem.learning.initial_q
         q = np.full((states.max_labels, N_ACTIONS), self._initial_q)
-        self.run = _new_run(problem, q, generator, episodes)
+        self.run = _new_run(problem, q, generators, episodes)
         self.run.counters[common.N_LABELS] = states.n_listed
         self._book = sensed.Book(
             label_of_bin=np.full(states.n_bins, -1, dtype=np.int32),

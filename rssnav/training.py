@@ -187,9 +187,10 @@ def _n_threads(threads: int | None) -> int:
     return threads
 
 
-def generator_state(seed: int, run: int) -> NDArray[np.uint64]:
-    """xoshiro256++ state (4,) that realisation ``run`` of a seed starts from."""
-    return np.random.SeedSequence(seed, spawn_key=(run,)).generate_state(4, np.uint64)
+def generator_states(seed: int, run: int) -> NDArray[np.uint64]:
+    """States (8,) of the two xoshiro256++ generators that realisation ``run`` starts from."""
+    words = np.random.SeedSequence(seed, spawn_key=(run,)).generate_state(8, np.uint64)
+    return words.astype(np.uint64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,7 +206,7 @@ class _Realiser:
     def __call__(self, run_id: int) -> _Realisation | None:
         """Train a realisation; None when told to stop on the way."""
         schedule = self.schedule
-        learner = self.problem.learner(generator_state(schedule.seed, run_id), schedule.episodes)
+        learner = self.problem.learner(generator_states(schedule.seed, run_id), schedule.episodes)
         counters = learner.run.counters
         snapshots = np.zeros(
             (len(schedule.snapshot_episodes), self.problem.n_states), dtype=np.int32

@@ -190,18 +190,19 @@ def _next_cells(plan: FloorPlan, radio_map: RadioMap, speed: int) -> NDArray[np.
     to_cell = np.where(on_map, to_y * n_x + to_x, -1)
     cell, action = np.nonzero(on_map)
     centres = _cell_centres(radio_map)
-    steps = shapely.linestrings(np.stack((centres[cell], centres[to_cell[on_map]]), axis=1))
-    crash = _crashes(plan, radio_map.grid.height_m, steps)
+    segments = np.stack((centres[cell], centres[to_cell[on_map]]), axis=1)
+    crash = _crashes(plan, radio_map.grid.height_m, segments)
     to_cell[cell[crash], action[crash]] = -1
     return to_cell
 
 
-def _crashes(plan: FloorPlan, height_m: float, steps: NDArray[np.object_]) -> NDArray[np.bool_]:
-    """Whether each step (a LineString) touches a wall or does not stay inside the outline."""
+def _crashes(plan: FloorPlan, height_m: float, segments: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether each segment (n, 2, 2) touches a wall or does not stay inside the outline."""
+    steps = np.array(shapely.linestrings(segments), dtype=np.object_)
+    walls = np.array(shapely.linestrings(plan.solid_segments(height_m)), dtype=np.object_)
     shapely.prepare(plan.outline)
-    crash = ~shapely.contains_properly(plan.outline, steps)
-    walls = shapely.STRtree(shapely.linestrings(plan.solid_segments(height_m)))
-    touching, _ = walls.query(steps, predicate="intersects")
+    crash = ~np.array(shapely.contains_properly(plan.outline, steps))
+    touching, _ = shapely.STRtree(walls).query(steps, predicate="intersects")
     crash[touching] = True
     return crash
 
@@ -239,8 +240,7 @@ def _start_cell(plan: FloorPlan, radio_map: RadioMap) -> int:
 
 
 def _check_speed(speed: object) -> None:
-    whole = isinstance(speed, (int, np.integer)) and not isinstance(speed, bool)
-    if not whole or int(speed) < 1:
+    if isinstance(speed, bool) or not isinstance(speed, int | np.integer) or speed < 1:
         raise WorldError(
             f"speed: {speed!r} is not a positive whole number of cells a step; use 1, 2, 4, ..."
         )

@@ -12,6 +12,9 @@ HASH_START = np.uint64(0xCBF29CE484222325)
 _HASH_FACTOR = np.uint64(0x9E3779B97F4A7C15)
 _1 = np.uint64(1)
 
+Index = int | np.uint64
+"""Unsigned in the fast loop: that spares numba's check for negative indices."""
+
 
 class Moves(NamedTuple):
     """Steps of a world: eight actions a state, rows laid end to end."""
@@ -41,7 +44,8 @@ class Run(NamedTuple):
 
     q: NDArray[np.float64]  # (rows * 8,)
     visits: NDArray[np.int32]  # (S,)
-    generator: NDArray[np.uint64]  # (4,)
+    generator: NDArray[np.uint64]  # (4,) exploration and fluctuation
+    tie_generator: NDArray[np.uint64]  # (4,) among equally good actions, where that is random
     rates: NDArray[np.float64]  # (2,) epsilon, alpha
     counters: NDArray[np.int64]  # (N_COUNTERS,) indexed by the names below
     episodes: NDArray[np.int32]  # (E, 3) of each episode: steps, diagonal steps, 1 if truncated
@@ -54,13 +58,13 @@ _SAME_PATHS_TO_CONVERGE = 3
 
 
 @njit(inline="always")
-def extended_hash(path_hash: np.uint64, action: np.uint64) -> np.uint64:
+def extended_hash(path_hash: np.uint64, action: Index) -> np.uint64:
     """Hash of a path one action longer.
 
     Every extension is a bijection of the 64 bits, so paths that differ in one action never share
     a hash; others do with a probability of about 2^-64, and must be equally long to count.
     """
-    return (path_hash ^ (action + _1)) * _HASH_FACTOR
+    return (path_hash ^ (np.uint64(action) + _1)) * _HASH_FACTOR
 
 
 @njit(inline="always")

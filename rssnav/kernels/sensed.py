@@ -27,9 +27,9 @@ from rssnav.kernels.common import (
     extended_hash,
 )
 from rssnav.kernels.xoshiro import (
+    draw,
     gaussian,
     index_from_low_bits,
-    next_uint64,
     unit_from_high_bits,
 )
 
@@ -66,20 +66,12 @@ class Book(NamedTuple):
 
 
 @njit(inline="always")
-def _draw(generator: NDArray[np.uint64]) -> np.uint64:
-    bits, generator[0], generator[1], generator[2], generator[3] = next_uint64(
-        generator[0], generator[1], generator[2], generator[3]
-    )
-    return bits
-
-
-@njit(inline="always")
 def _reading(sensor: Sensor, book: Book, generator: NDArray[np.uint64], cell: int) -> float:
     """RSS read in a cell [dBm]: a first-order autoregressive fluctuation on the map's value."""
     if sensor.sigma_db == 0.0:
         return sensor.rss_dbm[cell]
     rho = sensor.correlation
-    innovation = sensor.sigma_db * gaussian(_draw(generator), _draw(generator))
+    innovation = sensor.sigma_db * gaussian(draw(generator), draw(generator))
     book.fluctuation_db[0] = rho * book.fluctuation_db[0] + math.sqrt(1.0 - rho * rho) * innovation
     return sensor.rss_dbm[cell] + book.fluctuation_db[0]
 
@@ -112,9 +104,9 @@ def _label(
 ) -> int:
     """Label of a reading; a tolerance state is created when none fits."""
     if sensor.kind == LISTED:
-        return sensor.listed[cell]
+        return int(sensor.listed[cell])
     if sensor.kind == INTERVALS:
-        return np.searchsorted(sensor.edges_dbm, reading, side="right")
+        return int(np.searchsorted(sensor.edges_dbm, reading, side="right"))
     label = _known_state(sensor, book, reading)
     if label < 0:
         label = counters[N_LABELS]
@@ -145,7 +137,7 @@ def _greedy(moves: Moves, parameters: Parameters, run: Run, label: int, cell: in
     best, ties = _best(moves, parameters.all_actions, q, label, cell)
     skip = np.uint64(0)
     if parameters.random_ties:
-        skip = index_from_low_bits(_draw(run.generator), np.uint64(ties))
+        skip = index_from_low_bits(draw(run.tie_generator), np.uint64(ties))
     for a in range(8):
         counts = parameters.all_actions or moves.next_state[8 * cell + a] >= 0
         if counts and q[8 * label + a] == best:
@@ -164,7 +156,7 @@ def _fly_episode(
     Returns (steps, diagonal steps, path hash, terminated).
     """
     q, generator, rates, counters = run.q, run.generator, run.rates, run.counters
-    cell, steps, diagonal, terminated = np.int64(moves.start), 0, 0, False
+    cell, steps, diagonal, terminated = moves.start, 0, 0, False
     path_hash = HASH_START
     reading = _reading(sensor, book, generator, cell)
     label = _label(sensor, book, counters, cell, reading)
@@ -173,11 +165,11 @@ def _fly_episode(
         rates[0] = decayed(rates[0], parameters.epsilon_min, parameters.step_decay)
         rates[1] = decayed(rates[1], parameters.alpha_min, parameters.step_decay)
         choice = _greedy(moves, parameters, run, label, cell)
-        bits = _draw(generator)
+        bits = draw(generator)
         if unit_from_high_bits(bits) < rates[0] or moves.next_state[8 * cell + choice] < 0:
             pick = index_from_low_bits(bits, np.uint64(moves.n_possible[cell]))
-            choice = np.int64(moves.possible[8 * cell + np.int64(pick)])
-        arrived = np.int64(moves.next_state[8 * cell + choice])
+            choice = int(moves.possible[8 * cell + int(pick)])
+        arrived = int(moves.next_state[8 * cell + choice])
         next_reading = _reading(sensor, book, generator, arrived)
         terminated = next_reading > sensor.terminal_dbm
         reward = 0.0 if terminated and sensor.goal_replaces else next_reading - reading

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from rssnav.kernels.common import (
     EPISODE,
     HASH_START,
+    Index,
     Moves,
     Parameters,
     Run,
@@ -23,9 +24,8 @@ from rssnav.kernels.common import (
     decayed,
     extended_hash,
 )
-from rssnav.kernels.xoshiro import index_from_low_bits, next_uint64, unit_from_high_bits
+from rssnav.kernels.xoshiro import draw, index_from_low_bits, next_uint64, unit_from_high_bits
 
-# Unsigned indices spare numba's check for negative ones.
 _8 = np.uint64(8)
 _1 = np.uint64(1)
 
@@ -38,7 +38,7 @@ class Greedy(NamedTuple):
 
 
 @njit(inline="always")
-def _first_best(q: NDArray[np.float64], row: np.uint64) -> tuple[float, np.uint64]:
+def _first_best(q: NDArray[np.float64], row: Index) -> tuple[float, Index]:
     """Largest of the eight values from ``row`` on, and the first action that attains it."""
     best, action = q[row], np.uint64(0)
     for a in range(_1, _8):
@@ -51,8 +51,8 @@ def _first_best(q: NDArray[np.float64], row: np.uint64) -> tuple[float, np.uint6
 
 @njit(inline="always")
 def _renewed(
-    q: NDArray[np.float64], row: np.uint64, changed: np.uint64, best: float, first: np.uint64
-) -> tuple[float, np.uint64]:
+    q: NDArray[np.float64], row: Index, changed: Index, best: float, first: Index
+) -> tuple[float, Index]:
     """Maximum of a row and its first action after the value of ``changed`` became another."""
     value = q[row + changed]
     if changed == first and value < best:
@@ -70,12 +70,14 @@ def fill_greedy(q: NDArray[np.float64], greedy: Greedy) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _random_best(q: NDArray[np.float64], row: np.uint64, best: float, bits: np.uint64) -> np.uint64:
+def _random_best(
+    q: NDArray[np.float64], row: Index, best: float, generator: NDArray[np.uint64]
+) -> Index:
     """Uniform choice among the actions of a row that attain ``best``."""
     ties = np.uint64(0)
     for a in range(_8):
         ties += np.uint64(q[row + a] == best)
-    skip = index_from_low_bits(bits, ties)
+    skip = index_from_low_bits(draw(generator), ties)
     for a in range(_8):
         if q[row + a] == best:
             if skip == 0:
@@ -91,17 +93,21 @@ def learn(
     parameters: Parameters,
     run: Run,
     greedy: Greedy,
+    ties: NDArray[np.uint64] | None,
     until_episode: int,
 ) -> None:
-    """Go on learning to ``until_episode``, or to the episode in which the run converges."""
+    """Go on learning to ``until_episode``, or to the episode in which the run converges.
+
+    ``ties`` is the generator that breaks ties at random, None to take the first greedy action:
+    numba compiles the loop anew for each, without the other's code.
+    """
     next_state, terminal, q, visits = moves.next_state, moves.terminal, run.q, run.visits
     possible, n_possible = moves.possible, moves.n_possible
     best_value, best_action = greedy.value, greedy.action
     counters, episodes, rates, generator = run.counters, run.episodes, run.rates, run.generator
     epsilon_min, alpha_min = parameters.epsilon_min, parameters.alpha_min
     decay, gamma, max_steps = parameters.step_decay, parameters.gamma, parameters.max_steps
-    random_ties, episode_decay = parameters.random_ties, parameters.episode_decay
-    epsilon, alpha = rates[0], rates[1]
+    epsilon, alpha, episode_decay = rates[0], rates[1], parameters.episode_decay
     s0, s1, s2, s3 = generator[0], generator[1], generator[2], generator[3]
     converged = False
     while counters[EPISODE] < until_episode and not converged:
@@ -115,16 +121,17 @@ def learn(
             alpha = decayed(alpha, alpha_min, decay)
             row = state * _8
             action = np.uint64(best_action[state])
-            if random_ties:
-                bits, s0, s1, s2, s3 = next_uint64(s0, s1, s2, s3)
-                action = _random_best(q, row, best_value[state], bits)
+            if ties is not None:
+                action = _random_best(q, row, best_value[state], ties)
             bits, s0, s1, s2, s3 = next_uint64(s0, s1, s2, s3)
-            if unit_from_high_bits(bits) < epsilon or next_state[row + action] < 0:
+            arrived = next_state[row + action]
+            if arrived < 0 or unit_from_high_bits(bits) < epsilon:
                 pick = index_from_low_bits(bits, np.uint64(n_possible[state]))
                 action = np.uint64(possible[row + pick])
-            arrived = np.uint64(next_state[row + action])
-            terminated = terminal[arrived]
-            target = reward[row + action] + gamma * best_value[arrived]  # 0 beyond a terminal
+                arrived = next_state[row + action]
+            there = np.uint64(arrived)
+            terminated = terminal[there]
+            target = reward[row + action] + gamma * best_value[there]  # 0 beyond a terminal
             q[row + action] = (1.0 - alpha) * q[row + action] + alpha * target
             best_value[state], best_action[state] = _renewed(
                 q, row, action, best_value[state], np.uint64(best_action[state])
@@ -132,8 +139,8 @@ def learn(
             path_hash = extended_hash(path_hash, action)
             diagonal += action & _1
             steps += 1
-            visits[arrived] += 1
-            state = arrived
+            visits[there] += 1
+            state = there
         converged = close_episode(
             counters, episodes, steps, np.int64(diagonal), path_hash, terminated
         )

@@ -1,7 +1,8 @@
 """xoshiro256++ (Blackman and Vigna, 2021), a generator whose state lives in registers.
 
-The state is four ``uint64`` passed and returned by value, so that a loop keeps it in local
-variables. :func:`numpy.random.SeedSequence` supplies the seeds; see :mod:`rssnav.training`.
+The state is four ``uint64``: passed and returned by value by :func:`next_uint64`, so that a loop
+can keep it in local variables, or kept in an array by :func:`draw`.
+:class:`numpy.random.SeedSequence` supplies the seeds; see :mod:`rssnav.training`.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import math
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 _23 = np.uint64(23)
 _41 = np.uint64(41)
@@ -38,6 +40,15 @@ def next_uint64(
     s2 ^= shifted
     s3 = (s3 << _45) | (s3 >> _19)
     return bits, s0, s1, s2, s3
+
+
+@njit(inline="always")
+def draw(generator: NDArray[np.uint64]) -> np.uint64:
+    """Next 64 random bits of a generator kept in an array (4,), which advances."""
+    bits, generator[0], generator[1], generator[2], generator[3] = next_uint64(
+        generator[0], generator[1], generator[2], generator[3]
+    )
+    return bits
 
 
 @njit(inline="always")
