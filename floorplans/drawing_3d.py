@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
@@ -47,6 +48,7 @@ def draw_plan_3d(plan: FloorPlan, ax: Axes3D) -> None:
     _draw_markers(plan, ax)
     _draw_dimensions(plan, ax)
     _set_up_camera(plan, ax)
+    _draw_frame_and_legend(plan, ax)
 
 
 def _draw_floor(plan: FloorPlan, ax: Axes3D) -> None:
@@ -91,8 +93,8 @@ def _draw_markers(plan: FloorPlan, ax: Axes3D) -> None:
         (stem,) = ax.plot([x, x], [y, y], [z, top], color=colour, lw=1.2, zorder=2)
         (head,) = ax.plot([x], [y], [top], marker=mark.get_marker(), color=colour, zorder=3)
         head.set(gid=mark.get_gid(), markersize=mark.get_markersize(), markeredgecolor="white")
-        stem.set_clip_on(False)
-        head.set_clip_on(False)
+        stem.set(clip_on=False, in_layout=False)
+        head.set(clip_on=False, in_layout=False)
 
 
 def _draw_dimensions(plan: FloorPlan, ax: Axes3D) -> None:
@@ -112,35 +114,40 @@ def _set_up_camera(plan: FloorPlan, ax: Axes3D) -> None:
     ax.set_axis_off()
     box = (x_max - x_min, y_max - y_min, plan.height_m)
     ax.set_box_aspect(box)
-    spans = _projected_spans(plan, ax)
-    zoom = _fitting_zoom(spans, ax)
-    ax.set_box_aspect(box, zoom=zoom)  # pyright: ignore[reportArgumentType]
-    _draw_legend(plan, ax, top=0.5 - zoom * spans[1] / 2)
+    ax.set_box_aspect(box, zoom=_fitting_zoom(plan, ax))  # pyright: ignore[reportArgumentType]
 
 
-def _projected_spans(plan: FloorPlan, ax: Axes3D) -> NDArray[np.float64]:
-    """Width and height of the plan on the paper, as shares of the square that 3D axes draw in."""
-    x_min, y_min, x_max, y_max = plan.bounds
-    corners = product((x_min, x_max), (y_min, y_max), (0, MARKER_HEIGHT * plan.height_m), (1,))
-    projected = np.array(list(corners)) @ ax.get_proj().T
-    return np.ptp(projected[:, :2] / projected[:, 3:], axis=0) / ax.viewLim.width
-
-
-def _fitting_zoom(spans: NDArray[np.float64], ax: Axes3D) -> float:
+def _fitting_zoom(plan: FloorPlan, ax: Axes3D) -> float:
     """Return the zoom at which the plan fills the axes' whole rectangle, not only its square."""
     figure = ax.get_figure(root=False)
     assert figure is not None
     rectangle = ax.get_position(original=True).transformed(figure.transSubfigure)
     room = np.array([rectangle.width, rectangle.height]) / min(rectangle.size)
+    spans = np.ptp(_projected_corners(plan, ax), axis=0) / ax.viewLim.width
     return float(np.min(FILL * room / spans))
 
 
-def _draw_legend(plan: FloorPlan, ax: Axes3D, top: float) -> None:
+def _projected_corners(plan: FloorPlan, ax: Axes3D) -> NDArray[np.float64]:
+    """Corners of the box around the plan and its pins, projected; (8, 2), for `ax.transData`."""
+    x_min, y_min, x_max, y_max = plan.bounds
+    corners = product((x_min, x_max), (y_min, y_max), (0, MARKER_HEIGHT * plan.height_m), (1,))
+    projected = np.array(list(corners)) @ ax.get_proj().T
+    return projected[:, :2] / projected[:, 3:]
+
+
+def _draw_frame_and_legend(plan: FloorPlan, ax: Axes3D) -> None:
+    """Draw the legend below the plan, and an unseen line that tells layouts the plan's extent."""
+    corners = _projected_corners(plan, ax)
+    pad = 0.06 * np.ptp(corners[:, 0])
+    low, high = corners.min(axis=0) - pad, corners.max(axis=0) + pad
+    frame = Line2D([low[0], high[0]], [low[1], high[1]], linestyle="none", clip_on=False)
+    ax.add_artist(frame)
     handles = [*markers(), *material_handles(plan)]
     ax.legend(
         handles=handles,
         loc="upper center",
-        bbox_to_anchor=(0.5, top),
+        bbox_to_anchor=((low[0] + high[0]) / 2, low[1] + pad / 2),
+        bbox_transform=ax.transData,
         ncols=min(len(handles), 4),
         frameon=False,
         fontsize=9,

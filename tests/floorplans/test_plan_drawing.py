@@ -141,6 +141,20 @@ def test_3d_view_fits_into_its_axes(name: str) -> None:
     assert inches[:, 1].max() < 6 * room.y1
 
 
+@pytest.mark.parametrize("layout", ["constrained", "tight", "none"])
+def test_layouts_know_how_far_the_3d_view_reaches(layout: str) -> None:
+    figure = Figure(figsize=(9, 5), layout=layout)
+    ax = figure.add_subplot(projection="3d")
+    draw_plan_3d(floorplans.load("scenario1"), ax)
+    figure.draw_without_rendering()
+    extent = ax.get_tightbbox()
+    (walls,) = artists(ax, "walls")
+    corners = np.concatenate([path.vertices for path in walls.get_paths()])
+    pixels = ax.transData.transform(corners)
+    assert np.all(pixels > extent.min)
+    assert np.all(pixels < extent.max)
+
+
 @pytest.mark.parametrize(("suffix", "head"), [("png", b"\x89PNG"), ("svg", b"<?xml")])
 def test_picture_file_has_the_format_of_its_suffix(suffix, head, tmp_path) -> None:
     path = tmp_path / f"flat.{suffix}"
