@@ -8,9 +8,10 @@
 """
 
 from rssnav.agents import Agent, DecisionProcess, LocationAgent, QLearning, RssAgent
-from rssnav.planning import greedy_path, shortest_path, value_iteration
+from rssnav.planning import Path, Solution, greedy_path, shortest_path, value_iteration
 from rssnav.results import Schedule, TrainingResult
 from rssnav.states import ExactStates, Fluctuation, IntervalStates, ToleranceStates
+from rssnav.store import ResultFileError
 from rssnav.training import TrainingInterrupted, train
 from rssnav.world import ACTION_NAMES, ACTIONS, GridWorld, WorldError
 
@@ -24,9 +25,12 @@ __all__ = [
     "GridWorld",
     "IntervalStates",
     "LocationAgent",
+    "Path",
     "QLearning",
+    "ResultFileError",
     "RssAgent",
     "Schedule",
+    "Solution",
     "ToleranceStates",
     "TrainingInterrupted",
     "TrainingResult",

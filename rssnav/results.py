@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -130,6 +131,19 @@ class TrainingResult:
         """Positions (n + 1, 2) [m] of the final flight of the run at an index of ``run_ids``."""
         states = self.trajectories[index]
         return self.world.position[states[states >= 0]]
+
+    def save(self, path: str | Path) -> None:
+        """Write to an HDF5 file, replacing it only once it is complete."""
+        from rssnav.store import save_result
+
+        save_result(self, path)
+
+    @staticmethod
+    def load(path: str | Path) -> TrainingResult:
+        """Read from an HDF5 file; raises :class:`~rssnav.store.ResultFileError`."""
+        from rssnav.store import load_result
+
+        return load_result(path)
 
     def check_same_training(
         self, world: GridWorld, agent: Agent, learning: QLearning, schedule: Schedule

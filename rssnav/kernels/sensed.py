@@ -65,8 +65,8 @@ class Book(NamedTuple):
     fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
 
 
-@njit(inline="always")
-def _reading(sensor: Sensor, book: Book, generator: NDArray[np.uint64], cell: int) -> float:
+@njit(cache=True, nogil=True)
+def reading_in(sensor: Sensor, book: Book, generator: NDArray[np.uint64], cell: int) -> float:
     """RSS read in a cell [dBm]: a first-order autoregressive fluctuation on the map's value."""
     if sensor.sigma_db == 0.0:
         return sensor.rss_dbm[cell]
@@ -98,8 +98,8 @@ def _known_state(sensor: Sensor, book: Book, reading: float) -> int:
     return label
 
 
-@njit(inline="always")
-def _label(
+@njit(cache=True, nogil=True)
+def label_of(
     sensor: Sensor, book: Book, counters: NDArray[np.int64], cell: int, reading: float
 ) -> int:
     """Label of a reading; a tolerance state is created when none fits."""
@@ -158,8 +158,8 @@ def _fly_episode(
     q, generator, rates, counters = run.q, run.generator, run.rates, run.counters
     cell, steps, diagonal, terminated = moves.start, 0, 0, False
     path_hash = HASH_START
-    reading = _reading(sensor, book, generator, cell)
-    label = _label(sensor, book, counters, cell, reading)
+    reading = reading_in(sensor, book, generator, cell)
+    label = label_of(sensor, book, counters, cell, reading)
     run.visits[cell] += 1
     while not terminated and steps < parameters.max_steps:
         rates[0] = decayed(rates[0], parameters.epsilon_min, parameters.step_decay)
@@ -170,11 +170,11 @@ def _fly_episode(
             pick = index_from_low_bits(bits, np.uint64(moves.n_possible[cell]))
             choice = int(moves.possible[8 * cell + int(pick)])
         arrived = int(moves.next_state[8 * cell + choice])
-        next_reading = _reading(sensor, book, generator, arrived)
+        next_reading = reading_in(sensor, book, generator, arrived)
         terminated = next_reading > sensor.terminal_dbm
         reward = 0.0 if terminated and sensor.goal_replaces else next_reading - reading
         value = 0.0
-        next_label = _label(sensor, book, counters, arrived, next_reading)
+        next_label = label_of(sensor, book, counters, arrived, next_reading)
         if terminated:
             reward += sensor.goal_reward
         else:

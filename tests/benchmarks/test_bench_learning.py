@@ -1,0 +1,105 @@
+"""Speed of the learning loop beside plain C doing the same work on the same tables.
+
+    pytest tests/benchmarks/test_bench_learning.py --benchmark-enable -s
+
+prints million steps a second of the kernel and of q_loop.c, one thread, rounds taken in turn so
+that all see the same machine. Without --benchmark-enable only the equality of results is tested.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+from c_loop import COMPILER, CRun, build
+
+from rssnav import LocationAgent, QLearning, RssAgent
+from rssnav.agents import Agent
+from rssnav.kernels import common
+from rssnav.learners import LearningProblem, TabularLearner
+from rssnav.training import generator_states
+from rssnav.world import ACTIONS, GridWorld
+
+EPISODES = 1500
+ROUNDS = 7
+
+pytestmark = pytest.mark.skipif(COMPILER is None, reason="needs a C compiler")
+
+
+def hall_with_pillars(n_x: int = 96, n_y: int = 26) -> GridWorld:
+    """A world of the paper's size: open floor, with every third cell of every third row blocked."""
+    i_x, i_y = np.meshgrid(np.arange(n_x), np.arange(n_y))
+    free = ~((i_x % 3 == 1) & (i_y % 3 == 1))
+    state_of = np.full((n_y + 2, n_x + 2), -1, dtype=np.int32)
+    cell = np.argwhere(free)
+    state_of[1:-1, 1:-1][free] = np.arange(len(cell))
+    there = cell[:, None, :] + ACTIONS[None, :, ::-1] + 1
+    position = cell[:, ::-1] + 0.5
+    distance_m = np.hypot(*(position - (5.0, 14.0)).T)
+    rss_dbm = -20.5 - 22.0 * np.log10(distance_m / 1.9) + 2.0 * np.sin(np.arange(len(cell)))
+    rss_dbm[distance_m < 2.0] = -20.0 + 1e-3 * np.arange(np.count_nonzero(distance_m < 2.0))
+    return GridWorld(
+        next_state=state_of[there[..., 0], there[..., 1]],
+        rss_dbm=rss_dbm,
+        position=position,
+        cell=cell.astype(np.int32),
+        distance_m=distance_m,
+        start_state=int(state_of[3, 94]),
+        speed=1,
+        step_length_m=np.hypot(*ACTIONS.T),
+        shape=(n_y, n_x),
+        source=(5.0, 14.0, 1.5),
+        plan_name="hall with pillars",
+        plan_sha256="0" * 64,
+    )
+
+
+def fly_all(learner: TabularLearner, episodes: int) -> None:
+    while learner.run.counters[common.EPISODE] < episodes:
+        learner.advance(episodes)
+
+
+AGENTS = pytest.mark.parametrize("agent", [RssAgent(), LocationAgent()], ids=["rss", "location"])
+
+
+@AGENTS
+def test_c_loop_gives_the_same_results(agent: Agent, tmp_path):
+    problem = LearningProblem.of(hall_with_pillars(), agent, QLearning())
+    learner = TabularLearner(problem, generator_states(0, 0), 100)
+    fly_all(learner, 100)
+    library = build(tmp_path, "-ffp-contract=off")
+    for function in ("learn_plain", "learn_cached"):
+        run = CRun(problem, generator_states(0, 0), 100)
+        run.learn(library, function)
+        assert np.array_equal(run.steps, learner.run.episodes[:, common.STEPS]), function
+        assert np.array_equal(run.visits, learner.run.visits), function
+        assert np.array_equal(run.q, learner.run.q), function
+
+
+@AGENTS
+def test_bench_kernel_beside_c(agent: Agent, tmp_path, benchmark):
+    problem = LearningProblem.of(hall_with_pillars(), agent, QLearning())
+    library = build(tmp_path)
+    rates: dict[str, list[float]] = {"kernel": [], "learn_plain": [], "learn_cached": []}
+
+    def one_round() -> None:
+        learner = TabularLearner(problem, generator_states(0, 0), EPISODES)
+        begin = time.thread_time()
+        fly_all(learner, EPISODES)
+        seconds = time.thread_time() - begin
+        rates["kernel"].append(learner.run.counters[common.TOTAL_STEPS] / seconds)
+        for function in ("learn_plain", "learn_cached"):
+            run = CRun(problem, generator_states(0, 0), EPISODES)
+            begin = time.thread_time()
+            run.learn(library, function)
+            rates[function].append(run.steps.sum() / (time.thread_time() - begin))
+
+    benchmark.pedantic(one_round, rounds=ROUNDS, warmup_rounds=1)
+    best = {name: max(values) / 1e6 for name, values in rates.items()}
+    benchmark.extra_info.update(best)
+    kernel, plain, cached = best.values()
+    print(
+        f"\n{agent.name}: kernel {kernel:.1f}, C {plain:.1f}, C with cached maxima {cached:.1f} "
+        f"million steps a second; ratios {kernel / plain:.2f} and {kernel / cached:.2f}"
+    )
