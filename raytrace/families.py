@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from raytrace.edges import LevelEdge, UprightEdge
 from raytrace.kernels.beams import ORDER, Tree, grow_tree, hit_points
-from raytrace.kernels.level_edges import Rim, RimLegsIn, sum_level_edge
+from raytrace.kernels.level_edges import Rim, RimLegsIn, new_work, sum_level_edge
 from raytrace.kernels.path_points import level_points, reflection_points, upright_points
 from raytrace.kernels.reflections import sum_reflections
 from raytrace.kernels.strips import StripTree, edge_frame, grow_strips, hit_from_strip
 from raytrace.kernels.tracing import Record, Sums
+from raytrace.kernels.unfolding import most_items, new_leg
 from raytrace.kernels.upright_edges import Edge, LegsIn, legs_to_edge, sum_upright_edge
 from raytrace.kernels.utd import Wedge
 from raytrace.preparing import Tracing
@@ -52,7 +53,9 @@ class Reflections:
 
     def add_to(self, sums: Sums, record: Record) -> None:
         """See `Family`."""
-        sum_reflections(self._tracing.trace, self._tracing.tree, self._hits, sums, record)
+        tree = self._tracing.tree
+        leg = new_leg(most_items(tree.link))
+        sum_reflections(self._tracing.trace, tree, self._hits, leg, sums, record)
 
     def receivers_of(self, record: Record) -> NDArray[np.int64]:
         """See `Family`."""
@@ -94,7 +97,8 @@ class OverUprightEdge:
         """See `Family`."""
         if len(self._legs_in.order):
             legs, (tree, hits) = self._legs_in, self._lit
-            sum_upright_edge(self._tracing.trace, self._edge, legs, tree, hits, sums, record)
+            work = (new_leg(most_items(tree.link)), np.empty(6))
+            sum_upright_edge(self._tracing.trace, self._edge, legs, tree, hits, work, sums, record)
 
     def receivers_of(self, record: Record) -> NDArray[np.int64]:
         """See `Family`."""
@@ -152,7 +156,8 @@ class OverLevelEdge:
         """See `Family`."""
         if len(self._legs_in.order):
             source, (strips, lit) = (self._tracing.tree, self._legs_in), self._lit
-            sum_level_edge(self._tracing.trace, self._rim, source, strips, lit, sums, record)
+            work = new_work(self._tracing.tree, strips)
+            sum_level_edge(self._tracing.trace, self._rim, source, strips, lit, work, sums, record)
 
     def receivers_of(self, record: Record) -> NDArray[np.int64]:
         """See `Family`."""

@@ -92,6 +92,7 @@ def prepare(
             ceiling=scene.ceiling_material, receive_antenna=receive_antenna,
         ),
         source=np.array([x, y, z]),
+        source_z=image_heights(z, scene.height_m, config.max_reflections)[0],
         receivers=np.ascontiguousarray(receivers[:, :2]),
         level=level.astype(np.int64),
         image_z=np.array(

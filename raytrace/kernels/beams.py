@@ -54,8 +54,17 @@ class Targets(NamedTuple):
 def enlarged(rows: NDArray[np.generic]) -> NDArray[np.generic]:
     """Copy of an array with room for twice as many rows."""
     more = np.empty((2 * len(rows), rows.shape[1]), rows.dtype)
-    more[: len(rows)] = rows
+    for i in range(rows.shape[0]):
+        for k in range(rows.shape[1]):
+            more[i, k] = rows[i, k]
     return more
+
+
+@jit(allocates=False)
+def copy_row(rows: NDArray[np.generic], to: int, source: int) -> None:
+    """rows[to] = rows[source], much faster to compile."""
+    for k in range(rows.shape[1]):
+        rows[to, k] = rows[source, k]
 
 
 @jit()
@@ -78,14 +87,12 @@ def grow_tree(
     max_order
         Most reflections, the needed ones at floor and ceiling included.
     """
-    link = np.empty((256 + len(root_cells), 8), np.int32)
-    beam = np.empty((256 + len(root_cells), 6))
+    link = np.zeros((256 + len(root_cells), 8), np.int32)
+    beam = np.zeros((256 + len(root_cells), 6))
     n = 0
     for cell in root_cells:
-        link[n] = 0
         link[n, PARENT] = link[n, EDGE] = -1
         link[n, CELL] = cell
-        beam[n] = 0.0
         beam[n, IMAGE_X], beam[n, IMAGE_Y] = x, y
         n += 1
     i = 0
@@ -111,7 +118,7 @@ def grow_tree(
     return Tree(link[:n].copy(), beam[:n].copy())
 
 
-@jit(inline="always")
+@jit(allocates=False)
 def narrowed(
     view: PlanView, entry: int, beam: Floats, e: int
 ) -> tuple[bool, tuple[float, float, float, float]]:
@@ -131,7 +138,7 @@ def narrowed(
     return lit, (rx, ry, lx, ly)
 
 
-@jit(inline="always")
+@jit(allocates=False)
 def pass_through(
     view: PlanView,
     link: NDArray[np.int32],
@@ -142,8 +149,8 @@ def pass_through(
     window: tuple[float, float, float, float],
 ) -> None:
     """Write beam n: beam i carried on through edge e."""
-    link[n] = link[i]
-    beam[n] = beam[i]
+    copy_row(link, n, i)
+    copy_row(beam, n, i)
     link[n, PARENT], link[n, EDGE], link[n, REFLECTED] = i, e, 0
     link[n, CELL] = view.beyond[e]
     if view.profile[e] >= 0:
@@ -151,7 +158,7 @@ def pass_through(
     beam[n, RIGHT_X], beam[n, RIGHT_Y], beam[n, LEFT_X], beam[n, LEFT_Y] = window
 
 
-@jit(inline="always")
+@jit(allocates=False)
 def reflect(
     view: PlanView,
     link: NDArray[np.int32],
@@ -162,7 +169,7 @@ def reflect(
     window: tuple[float, float, float, float],
 ) -> None:
     """Write beam n: beam i mirrored at edge e."""
-    link[n] = link[i]
+    copy_row(link, n, i)
     link[n, PARENT], link[n, EDGE], link[n, REFLECTED] = i, e, 1
     link[n, ORDER] += 1
     link[n, FLIPPED] ^= 1
@@ -174,7 +181,7 @@ def reflect(
     beam[n, LEFT_X], beam[n, LEFT_Y] = mirrored(rx, ry, line)
 
 
-@jit(inline="always")
+@jit(allocates=False)
 def is_lit(tree: Tree, i: int, x: float, y: float) -> bool:
     """Whether a point of beam i's cell lies within its window."""
     if tree.link[i, EDGE] < 0:

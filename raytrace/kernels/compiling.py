@@ -38,7 +38,9 @@ def _use_own_cache() -> None:
 _use_own_cache()
 
 
-def jit(*, inline: str = "never", fast: bool = False) -> Callable[[Function], Function]:
+def jit(
+    *, inline: str = "never", fast: bool = False, allocates: bool = True
+) -> Callable[[Function], Function]:
     """Compile a kernel: cached, without the interpreter lock, divisions as in C.
 
     Parameters
@@ -47,6 +49,9 @@ def jit(*, inline: str = "never", fast: bool = False) -> Callable[[Function], Fu
         "always" for the small functions of inner loops.
     fast
         Allow `FAST` in place of strict IEEE arithmetic.
+    allocates
+        Whether it makes arrays. One that does not is spared the counting of references, which
+        otherwise takes most of the time of a loop that passes arrays in tuples.
     """
     return numba.njit(
         cache=True,
@@ -54,4 +59,5 @@ def jit(*, inline: str = "never", fast: bool = False) -> Callable[[Function], Fu
         inline=inline,
         error_model="numpy",
         fastmath=FAST if fast else False,
+        _nrt=allocates,
     )

@@ -149,7 +149,7 @@ def bounced(
     return upright, level, done
 
 
-@jit(fast=True)
+@jit(inline="always", fast=True)
 def carried(
     view: PlanView,
     radio: Radio,

@@ -8,14 +8,13 @@ from numpy.typing import NDArray
 
 from raytrace.kernels.beams import ORDER, PARENT, Tree
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.field import Radio, carried, interpolated, new_ray, phasor
-from raytrace.kernels.plan_view import Floats, Ints
+from raytrace.kernels.field import Radio, Ray, carried, interpolated, new_ray, phasor
+from raytrace.kernels.plan_view import Floats, Ints, PlanView
 from raytrace.kernels.strips import StripTree
 from raytrace.kernels.tracing import Record, Sums, Trace, recorded
 from raytrace.kernels.unfolding import (
     Leg,
     heights_fit,
-    image_heights,
     most_items,
     new_leg,
     unfold,
@@ -100,13 +99,26 @@ class Work(NamedTuple):
     angles_out: Floats
 
 
-@jit(fast=True)
+@jit()
+def new_work(tree: Tree, strips: StripTree) -> Work:
+    """Room for the paths between two sets of beams."""
+    return Work(
+        new_leg(most_items(tree.link)),
+        new_leg(most_items(strips.link)),
+        np.empty((len(strips.link), 2)),
+        np.empty(6),
+        np.empty(6),
+    )
+
+
+@jit(fast=True, allocates=False)
 def sum_level_edge(
     trace: Trace,
     rim: Rim,
     source: tuple[Tree, RimLegsIn],
     strips: StripTree,
     lit: tuple[NDArray[np.int32], Floats],
+    work: Work,
     sums: Sums,
     record: Record,
 ) -> None:
@@ -120,19 +132,14 @@ def sum_level_edge(
         Beams from the source, and those that light the edge.
     strips, lit
         Beams from the edge, and the receivers they light (see `strips.hit_from_strip`).
+    work
+        Room.
     sums, record
         Added to.
     """
     tree, legs_in = source
     hits, seen = lit
-    work = Work(
-        new_leg(most_items(tree.link)),
-        new_leg(most_items(strips.link)),
-        np.empty((len(strips.link), 2)),
-        np.empty(6),
-        np.empty(6),
-    )
-    z_in, bounces = image_heights(trace.source[2], trace.radio.height, trace.max_order)
+    z_in, bounces = trace.source_z, trace.image_bounces
     for hit in range(len(hits)):
         r, i = hits[hit, 0], hits[hit, 1]
         x, h, low, high = seen[hit]
@@ -172,7 +179,41 @@ def sum_level_edge(
                     recorded(record, hit, p, (a, b), gain)
 
 
-@jit()
+@jit(allocates=False)
+def unfold_leg(
+    view: PlanView,
+    link: NDArray[np.int32],
+    images: Floats,
+    i: int,
+    target: tuple[float, float],
+    leg: Leg,
+) -> tuple[int, float, float, float]:
+    """`unfolding.unfold`, compiled apart: this family calls it too seldom to be inlined."""
+    return unfold(view, link, images, i, target, leg)
+
+
+@jit(fast=True, allocates=False)
+def carry(
+    view: PlanView,
+    radio: Radio,
+    leg: Leg,
+    n: int,
+    length: float,
+    ray: Ray,
+    z_root: float,
+    field: tuple[complex, complex, int],
+) -> tuple[complex, complex, int]:
+    """`field.carried`, compiled apart."""
+    return carried(view, radio, leg, n, length, ray, z_root, field)
+
+
+@jit(allocates=False)
+def fits(view: PlanView, leg: Leg, n: int, z_root: float, slope: float, height: float) -> bool:
+    """`unfolding.heights_fit`, compiled apart."""
+    return heights_fit(view, leg, n, z_root, slope, height)
+
+
+@jit(allocates=False)
 def unfold_over_rim(
     trace: Trace,
     rim: Rim,
@@ -188,7 +229,7 @@ def unfold_over_rim(
     # the frame is orthonormal: (u, 0) back to the plan view
     x = frame[0] * (u - frame[2]) - frame[3] * frame[5]
     y = frame[1] * (u - frame[2]) - frame[4] * frame[5]
-    leg_in = unfold(trace.plan, tree.link, tree.beam, beams[0], (x, y), work.leg_in)
+    leg_in = unfold_leg(trace.plan, tree.link, tree.beam, beams[0], (x, y), work.leg_in)
     i = beams[1]
     while i >= 0:
         f = strips.frame[i]
@@ -196,11 +237,11 @@ def unfold_over_rim(
         work.images[i, 1] = f[1] * (u - f[2]) - f[4] * f[5]
         i = strips.link[i, PARENT]
     target = (trace.receivers[receiver, 0], trace.receivers[receiver, 1])
-    leg_out = unfold(trace.plan, strips.link, work.images, beams[1], target, work.leg_out)
+    leg_out = unfold_leg(trace.plan, strips.link, work.images, beams[1], target, work.leg_out)
     return leg_in, leg_out
 
 
-@jit(fast=True)
+@jit(fast=True, allocates=False)
 def rim_gain(
     trace: Trace,
     rim: Rim,
@@ -233,13 +274,13 @@ def rim_gain(
     start = -rise_in if path.bounces_in & 1 else rise_in
     slope_in, slope_out = start / length_in, rise_out / length_out
     if not (
-        heights_fit(view, work.leg_in, n_in, trace.source[2], slope_in, radio.height)
-        and heights_fit(view, work.leg_out, n_out, rim.z, slope_out, radio.height)
+        fits(view, work.leg_in, n_in, trace.source[2], slope_in, radio.height)
+        and fits(view, work.leg_out, n_out, rim.z, slope_out, radio.height)
     ):
         return False, 0j
     ray_in = new_ray(radio, slope_in, path.bounces_in)
     ray_out = new_ray(radio, slope_out, path.bounces_out)
-    upright, level, _ = carried(
+    upright, level, _ = carry(
         view, radio, work.leg_in, n_in, length_in, ray_in, trace.source[2], (1.0 + 0j, 0j, 0)
     )
     # direction of arrival at the edge, from the image of the source in the last beam
@@ -256,7 +297,7 @@ def rim_gain(
     normal = hard * (level * along - upright * across) / (sin_beta * sin_beta)
     along, across = turned_to_edge(rim.frame, ux, uy, ray_out.sin_el)
     field = (parallel * along - normal * across, parallel * across + normal * along, 0)
-    upright, level, done = carried(
+    upright, level, done = carry(
         view, radio, work.leg_out, n_out, length_out, ray_out, rim.z, field
     )
     arriving = ray_out.sin_el if done & 1 else -ray_out.sin_el
@@ -274,7 +315,7 @@ def turned_to_edge(frame: Floats, ux: float, uy: float, sin_el: float) -> tuple[
     return -sin_el * (ux * tx + uy * ty), ux * ty - uy * tx
 
 
-@jit(inline="always", fast=True)
+@jit(fast=True, allocates=False)
 def rim_diffraction(
     radio: Radio, rim: Rim, path: RimPath, h: tuple[float, float], sin_beta: float, work: Work
 ) -> tuple[complex, complex]:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from raytrace.kernels.beams import Tree
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.level_edges import Rim, RimLegsIn, Work, unfold_over_rim
+from raytrace.kernels.level_edges import Rim, RimLegsIn, new_work, unfold_over_rim
 from raytrace.kernels.plan_view import Floats, folded
 from raytrace.kernels.strips import StripTree
 from raytrace.kernels.tracing import Record, Trace
@@ -18,7 +18,6 @@ from raytrace.kernels.unfolding import (
     KIND,
     PASS_PARTIAL,
     Leg,
-    image_heights,
     most_items,
     new_leg,
     unfold,
@@ -173,12 +172,9 @@ def level_points(
     """Points and interactions of recorded paths over a level edge."""
     tree, legs_in = source
     hits, seen = lit
-    work = Work(
-        new_leg(most_items(tree.link)), new_leg(most_items(strips.link)),
-        np.empty((len(strips.link), 2)), np.empty(6), np.empty(6),
-    )  # fmt: skip
+    work = new_work(tree, strips)
     height, frame = trace.radio.height, rim.frame
-    z_in, bounces = image_heights(trace.source[2], height, trace.max_order)
+    z_in, bounces = trace.source_z, trace.image_bounces
     for path in range(record.used[0]):
         hit, p, a, b = record.key[path]
         r, i = hits[hit, 0], hits[hit, 1]

@@ -9,12 +9,12 @@ from raytrace.kernels.beams import ORDER, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import antenna_gain, carried, new_ray, phasor
 from raytrace.kernels.tracing import Record, Sums, Trace, recorded
-from raytrace.kernels.unfolding import heights_fit, most_items, new_leg, unfold
+from raytrace.kernels.unfolding import Leg, heights_fit, unfold
 
 
-@jit(fast=True)
+@jit(fast=True, allocates=False)
 def sum_reflections(
-    trace: Trace, tree: Tree, hits: NDArray[np.int32], sums: Sums, record: Record
+    trace: Trace, tree: Tree, hits: NDArray[np.int32], leg: Leg, sums: Sums, record: Record
 ) -> None:
     """Add the paths of all hits of the source's beam tree.
 
@@ -24,10 +24,11 @@ def sum_reflections(
         The trace and the beams from the source.
     hits
         (n, 2) receiver and beam.
+    leg
+        Room for the longest leg.
     sums, record
         Added to.
     """
-    leg = new_leg(most_items(tree.link))
     z_source = trace.source[2]
     for hit in range(len(hits)):
         r, i = hits[hit, 0], hits[hit, 1]

@@ -19,6 +19,7 @@ from raytrace.kernels.beams import (
     PARENT,
     REFLECTED,
     Targets,
+    copy_row,
     enlarged,
 )
 from raytrace.kernels.compiling import jit
@@ -75,7 +76,14 @@ def in_frame(frame: Floats, x: float, y: float) -> tuple[float, float]:
     )
 
 
-@jit()
+@jit(allocates=False)
+def copy_rays(rays: Floats, start: int, n: int, out: Floats, to: int) -> None:
+    """out[to:to + n] = rays[start:start + n], much faster to compile."""
+    for k in range(n):
+        out[to + k, 0], out[to + k, 1] = rays[start + k, 0], rays[start + k, 1]
+
+
+@jit(allocates=False)
 def clipped(rays: Floats, n: int, x: float, h: float, sign: float, out: Floats) -> int:
     """Keep the rays with sign (x - u - m h) >= 0; write them to `out`, return how many corners."""
     kept = 0
@@ -84,7 +92,7 @@ def clipped(rays: Floats, n: int, x: float, h: float, sign: float, out: Floats) 
         here = sign * (x - rays[i, 0] - rays[i, 1] * h)
         there = sign * (x - rays[j, 0] - rays[j, 1] * h)
         if here >= 0.0:
-            out[kept] = rays[i]
+            out[kept, 0], out[kept, 1] = rays[i, 0], rays[i, 1]
             kept += 1
         if (here > 0.0 and there < 0.0) or (here < 0.0 and there > 0.0):
             t = here / (here - there)
@@ -108,7 +116,7 @@ def is_sliver(rays: Floats, n: int) -> bool:
     return abs(area) < 1e-13 or high - low < SLIVER_M
 
 
-@jit()
+@jit(allocates=False)
 def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, out: Floats) -> int:
     """Clip beam i to the part that meets edge e; corners to `out`, return how many, 0 if none."""
     frame = tree.frame[i]
@@ -117,17 +125,17 @@ def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, 
     if h1 <= 1e-9 and h2 <= 1e-9:
         return 0
     n = tree.first[i + 1] - tree.first[i]
-    out[:n] = tree.rays[tree.first[i] : tree.first[i + 1]]
+    copy_rays(tree.rays, tree.first[i], n, out, 0)
     if h1 > 1e-9:
-        work[:n] = out[:n]
+        copy_rays(out, 0, n, work, 0)
         n = clipped(work, n, x1, h1, frame[6], out)
     if h2 > 1e-9 and n >= 3:
-        work[:n] = out[:n]
+        copy_rays(out, 0, n, work, 0)
         n = clipped(work, n, x2, h2, -frame[6], out)
     return 0 if is_sliver(out, n) else n
 
 
-@jit(inline="always")
+@jit(allocates=False)
 def mirror_frame(frame: Floats, line: Floats) -> None:
     """Change a frame to that of the beam mirrored at a line."""
     nx, ny, d = line[0], line[1], line[2]
@@ -186,7 +194,8 @@ def grow_strips(
                     link, frame, first = enlarged(link), enlarged(frame), enlarged(first)
                 while first[n, 0] + corners > len(rays):
                     rays = enlarged(rays)
-                link[n], frame[n] = link[i], frame[i]
+                copy_row(link, n, i)
+                copy_row(frame, n, i)
                 link[n, PARENT], link[n, EDGE], link[n, REFLECTED] = i, e, way
                 link[n, BOUNCES] = needed
                 link[n, ORDER] += way
@@ -196,7 +205,7 @@ def grow_strips(
                     link[n, CELL] = view.beyond[e]
                 else:
                     mirror_frame(frame[n], view.plane[e])
-                rays[first[n, 0] : first[n, 0] + corners] = out[:corners]
+                copy_rays(out, 0, corners, rays, first[n, 0])
                 first[n + 1, 0] = first[n, 0] + corners
                 n += 1
                 tree = StripTree(link, frame, first[:, 0], rays)
@@ -239,7 +248,7 @@ def hit_from_strip(tree: StripTree, targets: Targets) -> tuple[NDArray[np.int32]
     return hits[:n].copy(), seen[:n].copy()
 
 
-@jit(inline="always")
+@jit(allocates=False)
 def stretch_through(rays: Floats, x: float, h: float) -> tuple[float, float]:
     """Smallest and largest u of the rays of a polygon through (x, h); empty if low > high."""
     low, high = 1e300, -1e300

@@ -19,6 +19,8 @@ class Trace(NamedTuple):
         Plan view, and wavelength, materials and antennas.
     source
         (3,) the transmitter [m].
+    source_z
+        (2 max_order + 1,) images of its height in floor and ceiling [m].
     receivers
         (n, 2) plan-view positions [m].
     level
@@ -34,6 +36,7 @@ class Trace(NamedTuple):
     plan: PlanView
     radio: Radio
     source: Floats
+    source_z: Floats
     receivers: Floats
     level: Ints
     image_z: Floats
@@ -95,9 +98,7 @@ def new_record(n_paths: int) -> Record:
 
 
 @jit(inline="always")
-def recorded(
-    record: Record, hit: int, leg: int, images: tuple[int, int], gain: complex
-) -> None:
+def recorded(record: Record, hit: int, leg: int, images: tuple[int, int], gain: complex) -> None:
     """Write a path down if there is room."""
     k = record.used[0]
     if k < len(record.gain):

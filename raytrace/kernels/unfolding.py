@@ -55,7 +55,7 @@ def most_items(link: NDArray[np.int32]) -> int:
     return most
 
 
-@jit()
+@jit(inline="always")
 def unfold(
     view: PlanView,
     link: NDArray[np.int32],
@@ -124,7 +124,7 @@ def mark_of(view: PlanView, e: int, passed: bool) -> tuple[int, int]:
     return REFLECT_PARTIAL, profile
 
 
-@jit()
+@jit(inline="always")
 def heights_fit(
     view: PlanView, leg: Leg, n: int, z_root: float, slope: float, height: float
 ) -> bool:

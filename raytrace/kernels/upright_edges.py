@@ -20,7 +20,6 @@ from raytrace.kernels.unfolding import (
     heights_fit,
     is_constrained,
     most_items,
-    new_leg,
     unfold,
 )
 from raytrace.kernels.utd import (
@@ -142,13 +141,14 @@ def legs_to_edge(trace: Trace, tree: Tree, beams: NDArray[np.int32], edge: Edge)
     )
 
 
-@jit(fast=True)
+@jit(fast=True, allocates=False)
 def sum_upright_edge(
     trace: Trace,
     edge: Edge,
     legs_in: LegsIn,
     tree: Tree,
     hits: NDArray[np.int32],
+    work: tuple[Leg, Floats],
     sums: Sums,
     record: Record,
 ) -> None:
@@ -162,13 +162,13 @@ def sum_upright_edge(
         Legs from the source.
     tree, hits
         Beams from the edge, and the receivers they light (n, 2).
+    work
+        Room for the longest leg and for six functions of an angle.
     sums, record
         Added to.
     """
-    leg = new_leg(most_items(tree.link))
-    angles = np.empty(6)
+    leg, angles = work
     z_source = trace.source[2]
-    unit = (1.0 + 0j, 0j, 0)
     common = common_factor(edge.wedge.n, trace.radio.wavelength)
     for hit in range(len(hits)):
         r, i = hits[hit, 0], hits[hit, 1]

@@ -84,7 +84,7 @@ def detour(n: float, beta: float, cos_half: float, sin_half: float, sign: float)
     return abs(math.cos(angle) * cos_half + math.sin(angle) * sin_half)
 
 
-@jit(fast=True)
+@jit(inline="always", fast=True)
 def wedge_terms(n: float, phi: float, at: Floats, phi_source: float, source: Floats) -> WedgeTerms:
     """Terms of one pair of directions.
 
