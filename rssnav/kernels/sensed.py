@@ -36,7 +36,7 @@ from rssnav.kernels.xoshiro import (
 LISTED, TOLERANCE, INTERVALS = range(3)
 """How a reading becomes a label: by its cell's listed label, tolerance states, fixed bins."""
 
-_NEIGHBOUR_BINS = 2  # bins are half a threshold wide, and a state lies within a threshold
+_NEIGHBOUR_BINS = 3  # a threshold is two bins wide; one more for rounding
 
 
 class Sensor(NamedTuple):
@@ -56,9 +56,11 @@ class Sensor(NamedTuple):
 
 
 class Book(NamedTuple):
-    """Tolerance states of one run. Known states lie at least Th apart, so a bin of Th / 2 holds
-    at most one, and all that fit a reading are within two bins of it.
-    """  # noqa: D205
+    """Tolerance states of one run.
+
+    Known states lie at least Th apart, so a bin of width Th / 2 holds at most one of them, and
+    those that can fit a reading are in the bins beside its own.
+    """
 
     label_of_bin: NDArray[np.int32]  # (bins,) -1 where no state is known
     value_dbm: NDArray[np.float64]  # (rows,) reading that created the state
