@@ -9,7 +9,10 @@ ends in ``_db`` or ``_dbm``.
 from raytrace.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
 from raytrace.errors import MapFileError, SceneError
 from raytrace.grid import Grid, TraceConfig
+from raytrace.paths import Paths
 from raytrace.radio_map import RadioMap
+from raytrace.scene import Scene
+from raytrace.trace import compute_radio_map, trace_paths
 from raytrace.transmitter import Transmitter
 
 __all__ = [
@@ -19,8 +22,12 @@ __all__ = [
     "HalfWaveDipole",
     "Isotropic",
     "MapFileError",
+    "Paths",
     "RadioMap",
+    "Scene",
     "SceneError",
     "TraceConfig",
     "Transmitter",
+    "compute_radio_map",
+    "trace_paths",
 ]

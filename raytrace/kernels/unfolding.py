@@ -152,10 +152,10 @@ def heights_fit(
 @jit(inline="always")
 def is_constrained(leg: Leg, n: int) -> bool:
     """Whether a leg meets a partial wall, so that its heights matter."""
+    met = False
     for k in range(n):
-        if leg.marks[k, KIND] != REFLECT_WALL:
-            return True
-    return False
+        met = met or leg.marks[k, KIND] != REFLECT_WALL
+    return met
 
 
 @jit()
