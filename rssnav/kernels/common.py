@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from rssnav.kernels.compiling import jit
 
 HASH_START = np.uint64(0xCBF29CE484222325)
 _HASH_FACTOR = np.uint64(0x9E3779B97F4A7C15)
@@ -57,7 +58,7 @@ STEPS, DIAGONAL_STEPS, TRUNCATED = range(3)
 _SAME_PATHS_TO_CONVERGE = 3
 
 
-@njit(inline="always")
+@jit(inline="always")
 def extended_hash(path_hash: np.uint64, action: Index) -> np.uint64:
     """Hash of a path one action longer.
 
@@ -67,13 +68,13 @@ def extended_hash(path_hash: np.uint64, action: Index) -> np.uint64:
     return (path_hash ^ (np.uint64(action) + _1)) * _HASH_FACTOR
 
 
-@njit(inline="always")
+@jit(inline="always")
 def decayed(rate: float, minimum: float, factor: float) -> float:
     """Epsilon or alpha one decay later (Algorithm 1: while not below its minimum)."""
     return rate * factor if rate >= minimum else rate
 
 
-@njit(inline="always")
+@jit(inline="always")
 def close_episode(
     counters: NDArray[np.int64],
     episodes: NDArray[np.int32],

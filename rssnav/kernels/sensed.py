@@ -12,7 +12,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from rssnav.kernels.common import (
@@ -26,6 +25,7 @@ from rssnav.kernels.common import (
     decayed,
     extended_hash,
 )
+from rssnav.kernels.compiling import jit
 from rssnav.kernels.xoshiro import (
     draw,
     gaussian,
@@ -67,7 +67,7 @@ class Book(NamedTuple):
     fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
 
 
-@njit(cache=True, nogil=True)
+@jit()
 def reading_in(sensor: Sensor, book: Book, generator: NDArray[np.uint64], cell: int) -> float:
     """RSS read in a cell [dBm]: a first-order autoregressive fluctuation on the map's value."""
     if sensor.sigma_db == 0.0:
@@ -78,13 +78,13 @@ def reading_in(sensor: Sensor, book: Book, generator: NDArray[np.uint64], cell: 
     return sensor.rss_dbm[cell] + book.fluctuation_db[0]
 
 
-@njit(inline="always")
+@jit(inline="always")
 def _bin(sensor: Sensor, book: Book, reading: float) -> int:
     position = int((reading - sensor.low_dbm) * (2.0 / sensor.threshold_db))
     return min(max(position, 0), book.label_of_bin.size - 1)
 
 
-@njit(cache=True, nogil=True)
+@jit()
 def _known_state(sensor: Sensor, book: Book, reading: float) -> int:
     """Nearest known state within Th of a reading, the older of two as near; -1 if there is none."""
     centre = _bin(sensor, book, reading)
@@ -100,7 +100,7 @@ def _known_state(sensor: Sensor, book: Book, reading: float) -> int:
     return label
 
 
-@njit(cache=True, nogil=True)
+@jit()
 def label_of(
     sensor: Sensor, book: Book, counters: NDArray[np.int64], cell: int, reading: float
 ) -> int:
@@ -118,7 +118,7 @@ def label_of(
     return label
 
 
-@njit(inline="always")
+@jit(inline="always")
 def _best(
     moves: Moves, all_actions: bool, q: NDArray[np.float64], label: int, cell: int
 ) -> tuple[float, int]:
@@ -132,7 +132,7 @@ def _best(
     return best, ties
 
 
-@njit(inline="always")
+@jit(inline="always")
 def _greedy(moves: Moves, parameters: Parameters, run: Run, label: int, cell: int) -> int:
     """Greedy action in a cell; it may be blocked when the maximum runs over all actions."""
     q = run.q
@@ -149,7 +149,7 @@ def _greedy(moves: Moves, parameters: Parameters, run: Run, label: int, cell: in
     return 0
 
 
-@njit(cache=True, nogil=True)
+@jit()
 def _fly_episode(
     moves: Moves, sensor: Sensor, parameters: Parameters, run: Run, book: Book
 ) -> tuple[int, int, np.uint64, bool]:
@@ -191,7 +191,7 @@ def _fly_episode(
     return steps, diagonal, path_hash, terminated
 
 
-@njit(cache=True, nogil=True)
+@jit()
 def learn(
     moves: Moves, sensor: Sensor, parameters: Parameters, run: Run, book: Book, until_episode: int
 ) -> None:
@@ -206,7 +206,7 @@ def learn(
         )
 
 
-@njit(cache=True, nogil=True)
+@jit()
 def steady_labels(sensor: Sensor, book: Book, labels: NDArray[np.int32]) -> None:
     """Label of every cell's reading without fluctuation; -1 where no known state fits."""
     for cell in range(labels.size):

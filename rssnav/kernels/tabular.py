@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from rssnav.kernels.common import (
@@ -24,6 +23,7 @@ from rssnav.kernels.common import (
     decayed,
     extended_hash,
 )
+from rssnav.kernels.compiling import jit
 from rssnav.kernels.xoshiro import draw, index_from_low_bits, next_uint64, unit_from_high_bits
 
 _8 = np.uint64(8)
@@ -37,7 +37,7 @@ class Greedy(NamedTuple):
     action: NDArray[np.uint8]  # (S,)
 
 
-@njit(inline="always")
+@jit(inline="always")
 def _first_best(q: NDArray[np.float64], row: Index) -> tuple[float, Index]:
     """Largest of the eight values from ``row`` on, and the first action that attains it."""
     best, action = q[row], np.uint64(0)
@@ -49,7 +49,7 @@ def _first_best(q: NDArray[np.float64], row: Index) -> tuple[float, Index]:
     return best, action
 
 
-@njit(inline="always")
+@jit(inline="always")
 def _renewed(
     q: NDArray[np.float64], row: Index, changed: Index, best: float, first: Index
 ) -> tuple[float, Index]:
@@ -62,14 +62,14 @@ def _renewed(
     return best, first
 
 
-@njit(cache=True, nogil=True)
+@jit()
 def fill_greedy(q: NDArray[np.float64], greedy: Greedy) -> None:
     """Find the greedy action of every row."""
     for state in range(greedy.value.size):
         greedy.value[state], greedy.action[state] = _first_best(q, np.uint64(8 * state))
 
 
-@njit(cache=True, nogil=True)
+@jit()
 def _random_best(
     q: NDArray[np.float64], row: Index, best: float, generator: NDArray[np.uint64]
 ) -> Index:
@@ -86,7 +86,7 @@ def _random_best(
     return np.uint64(0)
 
 
-@njit(cache=True, nogil=True)
+@jit()
 def learn(
     moves: Moves,
     reward: NDArray[np.float64],
@@ -141,8 +141,6 @@ def learn(
             steps += 1
             visits[there] += 1
             state = there
-        converged = close_episode(
-            counters, episodes, steps, np.int64(diagonal), path_hash, terminated
-        )
+        converged = close_episode(counters, episodes, steps, int(diagonal), path_hash, terminated)
     rates[0], rates[1] = epsilon, alpha
     generator[0], generator[1], generator[2], generator[3] = s0, s1, s2, s3
