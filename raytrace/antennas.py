@@ -42,7 +42,7 @@ class HalfWaveDipole:
 
     def amplitude(self, cos_theta: NDArray[np.float64]) -> NDArray[np.float64]:
         """Field amplitude over the direction's z component, any shape [1]."""
-        sin_theta = np.sqrt(np.maximum(1.0 - cos_theta**2, 1e-30))
+        sin_theta = np.sqrt(np.maximum(1.0 - cos_theta**2, 1e-12))
         return 10.0 ** (self.peak_gain_db / 20.0) * np.cos(0.5 * np.pi * cos_theta) / sin_theta
 
     def describe(self) -> str:

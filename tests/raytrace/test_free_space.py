@@ -20,7 +20,7 @@ from raytrace.preparing import TIE_OFFSET_M
 HALL = box(64.0, 32.0)
 DIRECT = TraceConfig(max_reflections=0, max_diffractions=0)
 SOURCE = np.array([20.0, 10.0, 1.5])
-PLACED = SOURCE + [*TIE_OFFSET_M, 0.0]
+PLACED = SOURCE + np.array([*TIE_OFFSET_M, 0.0])
 
 
 def direct_gain(receivers: np.ndarray, source: Transmitter, **antenna: Isotropic) -> np.ndarray:
@@ -36,7 +36,7 @@ def friis(distance: np.ndarray, frequency_hz: float) -> np.ndarray:
 
 
 def test_path_loss_at_1_m_is_40_05_db() -> None:
-    receiver = PLACED + [1.0, 0.0, 0.0]
+    receiver = PLACED + np.array([1.0, 0.0, 0.0])
     (gain,) = direct_gain(receiver[None], Transmitter(tuple(SOURCE)))
     assert -20.0 * np.log10(abs(gain)) == pytest.approx(40.05, abs=0.005)
 
@@ -85,7 +85,7 @@ def test_the_peak_gain_is_that_of_a_lossless_dipole() -> None:
 
 @pytest.mark.parametrize("source", [SOURCE, PLACED], ids=["nominal place", "place with offset"])
 def test_a_dipole_is_silent_straight_up(source: np.ndarray) -> None:
-    (gain,) = direct_gain(source[None] + [0.0, 0.0, 1.0], Transmitter(tuple(SOURCE)))
+    (gain,) = direct_gain(source[None] + np.array([0.0, 0.0, 1.0]), Transmitter(tuple(SOURCE)))
     assert abs(gain) < 1e-7
 
 
