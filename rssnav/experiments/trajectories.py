@@ -1,0 +1,97 @@
+"""Figure: final flights of both agents over the RSS maps, at 1 m/s."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from rssnav.experiments.data import AGENT_LABELS, AgentName, PaperData
+from rssnav.experiments.heat_maps import colour_scale, draw_map
+from rssnav.figures import (
+    INK,
+    PAGE_IN,
+    draw_flight,
+    draw_source,
+    draw_start,
+    label_panel,
+    new_figure,
+    styled,
+)
+from rssnav.results import TrainingResult
+from rssnav.world import GOAL_DISTANCE_M
+
+SPEED = 1
+_ORDER: tuple[AgentName, ...] = ("rss", "location")
+
+
+@styled
+def draw(data: PaperData) -> Figure:
+    """Draw a column of panels per agent, a row per scenario."""
+    plans = [scenario.plan for scenario in data.scenarios.values()]
+    shapes = [(p.bounds[3] - p.bounds[1]) / (p.bounds[2] - p.bounds[0]) for p in plans]
+    figure = new_figure(PAGE_IN, 1.35 + 0.5 * (PAGE_IN - 1.3) * sum(shapes), maps=True)
+    panels = figure.subplots(len(plans), len(_ORDER), height_ratios=shapes, squeeze=False)
+    norm = colour_scale(data)
+    for column, agent in enumerate(_ORDER):
+        for row, number in enumerate(data.scenarios):
+            ax: Axes = panels[row, column]
+            image = draw_map(ax, data.scenarios[number], norm)
+            image.set_alpha(0.75)
+            _draw_median_flight(ax, data, number, agent)
+            letter = "abcd"[column * len(plans) + row]
+            label_panel(ax, letter, f"{AGENT_LABELS[agent]}, Scenario {number}")
+            if column:
+                ax.tick_params(labelleft=False)
+                ax.set_ylabel("")
+    _legend(figure, panels[0, 0], data)
+    bar = figure.colorbar(image, ax=panels.ravel().tolist(), extend="min", pad=0.01, aspect=36)
+    bar.set_label("RSS [dBm]")
+    return figure
+
+
+def _draw_median_flight(ax: Axes, data: PaperData, scenario: int, agent: AgentName) -> None:
+    """Draw the median run's flight and the target zone."""
+    result = data.result(scenario, agent, SPEED)
+    x, y, _ = data.scenarios[scenario].plan.source
+    zone = Circle((x, y), GOAL_DISTANCE_M, facecolor="none", edgecolor=INK, linestyle=":", lw=0.9)
+    zone.set_gid("target zone")
+    ax.add_patch(zone)
+    median = median_run(result)
+    if median is not None:
+        draw_flight(ax, result.trajectory_m(median), agent)
+
+
+def median_run(result: TrainingResult) -> int | None:
+    """Return the index of the run whose flight is of median length; None if none arrives."""
+    arrived = np.flatnonzero(result.reached)
+    if arrived.size == 0:
+        return None
+    by_length = arrived[np.argsort(result.path_length_m[arrived], kind="stable")]
+    return int(by_length[(arrived.size - 1) // 2])
+
+
+def _legend(figure: Figure, ax: Axes, data: PaperData) -> None:
+    plan = next(iter(data.scenarios.values())).plan
+    flights = [draw_flight(ax, np.full((1, 2), np.nan), agent) for agent in _ORDER]
+    for line, agent in zip(flights, _ORDER, strict=True):
+        line.set_label(f"{AGENT_LABELS[agent]} agent")
+    zone = ax.plot([], [], linestyle=":", color=INK, lw=0.9, label="target zone, $D$ < 2 m")
+    marks = [draw_source(ax, plan), draw_start(ax, plan)]
+    figure.legend(handles=[*flights, *marks, *zone], loc="outside lower center", ncols=5)
+
+
+def caption(data: PaperData) -> str:
+    """Say what the figure shows."""
+    lengths = "; ".join(
+        f"{AGENT_LABELS[agent]} {result.path_length_m[median]:.1f} m in "
+        f"{result.path_steps[median]} steps (Scenario {number})"
+        for agent in _ORDER
+        for number in data.scenarios
+        if (median := median_run(result := data.result(number, agent, SPEED))) is not None
+    )
+    return (
+        f"Final greedy flight at {SPEED} m/s of the realisation with the median length: {lengths}. "
+        "An episode ends inside the dotted circle, closer than 2 m to the source."
+    )

@@ -1,0 +1,61 @@
+"""Figure: visits of each cell in the first 200, 500 and 1000 episodes, Scenario 1, 1 m/s."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from rssnav.experiments.data import AGENT_LABELS, AgentName, PaperData
+from rssnav.figures import (
+    PAGE_IN,
+    draw_cells,
+    draw_source,
+    draw_start,
+    draw_walls,
+    label_panel,
+    new_figure,
+    styled,
+)
+
+SCENARIO, SPEED = 1, 1
+_ORDER: tuple[AgentName, ...] = ("location", "rss")
+_UNVISITED = "#e4e4e4"
+_FEWEST = 1.0
+
+
+@styled
+def draw(data: PaperData) -> Figure:
+    """Draw a row of panels per interval of episodes, a column per agent, all on one scale."""
+    results = [data.result(SCENARIO, agent, SPEED) for agent in _ORDER]
+    episodes = results[0].schedule.snapshot_episodes
+    scenario = data.scenarios[SCENARIO]
+    x_min, y_min, x_max, y_max = scenario.plan.bounds
+    panel_in = 0.5 * (PAGE_IN - 1.1) * (y_max - y_min) / (x_max - x_min)
+    figure = new_figure(PAGE_IN, 0.5 + len(episodes) * (panel_in + 0.24), maps=True)
+    panels = figure.subplots(
+        len(episodes), len(_ORDER), sharex=True, sharey=True, squeeze=False
+    )
+    most = max(result.visits.max() for result in results)
+    norm = LogNorm(_FEWEST, most)
+    for column, (agent, result) in enumerate(zip(_ORDER, results, strict=True)):
+        for row, (shown, count) in enumerate(zip(result.visits, episodes, strict=True)):
+            ax: Axes = panels[row, column]
+            visited = np.ma.masked_equal(shown, 0.0)
+            image = draw_cells(ax, scenario.radio_map.grid, visited, norm=norm, colours="viridis")
+            ax.set_facecolor(_UNVISITED)
+            draw_walls(ax, scenario.plan, scenario.radio_map.grid.height_m)
+            draw_source(ax, scenario.plan)
+            draw_start(ax, scenario.plan)
+            letter = "abcdef"[row * len(_ORDER) + column]
+            label_panel(ax, letter, f"{AGENT_LABELS[agent]}, first {count} episodes")
+            ax.label_outer()
+    bar = figure.colorbar(image, ax=panels.ravel().tolist(), extend="min", pad=0.01, aspect=36)
+    bar.set_label("visits of a cell, mean over runs")
+    return figure
+
+
+def caption(data: PaperData) -> str:
+    """Say what the figure shows."""
+    return ""

@@ -1,0 +1,225 @@
+"""The look of all figures: sizes, fonts, colours, and the parts that several of them share.
+
+Figures are made with matplotlib's objects (no pyplot, no global figure), at the widths of a
+two-column IEEE page, in 8 pt type. An agent has the same colour in every figure; maps are in
+viridis. Both stay apart for colour-blind readers and in print.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ParamSpec
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Colormap, Normalize, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from floorplans import FloorPlan
+    from raytrace import Grid
+
+COLUMN_IN = 3.5
+"""Width of one column [inch]."""
+
+PAGE_IN = 7.16
+"""Width of both columns [inch]."""
+
+DPI = 300
+
+AGENT_COLOURS = {"rss": "#0072b2", "location": "#d55e00"}
+INK = "#1a1a1a"
+FAINT = "#8a8a8a"
+SOURCE = "#d81b60"
+START = "#ffffff"
+MAP_COLOURS = "viridis"
+
+STYLE: dict[str, Any] = {
+    "font.family": "STIXGeneral",
+    "mathtext.fontset": "stix",
+    "font.size": 8.0,
+    "axes.titlesize": 8.0,
+    "axes.labelsize": 8.0,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "legend.fontsize": 8.0,
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "xtick.minor.size": 1.5,
+    "ytick.minor.size": 1.5,
+    "axes.titlelocation": "left",
+    "axes.titlepad": 3.0,
+    "axes.labelpad": 2.0,
+    "legend.frameon": False,
+    "legend.handlelength": 1.8,
+    "lines.linewidth": 1.1,
+    "grid.color": "#d9d9d9",
+    "grid.linewidth": 0.4,
+    "image.interpolation": "nearest",
+    "pdf.fonttype": 42,
+    "figure.constrained_layout.h_pad": 0.05,
+    "figure.constrained_layout.w_pad": 0.04,
+    "savefig.facecolor": "white",
+    "svg.hashsalt": "rssnav",
+}
+
+P = ParamSpec("P")
+
+
+def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
+    """Decorate a function that draws a figure, so that it draws in the project's style."""
+
+    @wraps(draw)
+    def drawing(*args: P.args, **kwargs: P.kwargs) -> Figure:
+        with rc_context(STYLE):
+            return draw(*args, **kwargs)
+
+    return drawing
+
+
+def new_figure(width_in: float, height_in: float, *, maps: bool = False) -> Figure:
+    """Return an empty figure whose axes never overlap; ``maps`` for a grid of true-scale maps."""
+    layout = "compressed" if maps else "constrained"
+    return Figure(figsize=(width_in, height_in), layout=layout)
+
+
+def png_bytes(figure: Figure, dpi: float = DPI) -> bytes:
+    """Return a figure as a PNG file's content."""
+    buffer = BytesIO()
+    with rc_context(STYLE):
+        figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
+    return buffer.getvalue()
+
+
+def save_figure(figure: Figure, stem: Path) -> bytes:
+    """Write a figure to ``stem`` + .png and .pdf; return the PNG's content."""
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    png = png_bytes(figure)
+    stem.with_name(f"{stem.name}.png").write_bytes(png)
+    with rc_context(STYLE):
+        figure.savefig(stem.with_name(f"{stem.name}.pdf"), metadata={"CreationDate": None})
+    return png
+
+
+def shade(colour: str, lightness: float) -> tuple[float, float, float]:
+    """Mix a colour with white (``lightness`` in 0..1) or with black (in -1..0)."""
+    target = 1.0 if lightness > 0.0 else 0.0
+    mixed = np.array(to_rgb(colour)) * (1.0 - abs(lightness)) + target * abs(lightness)
+    red, green, blue = (float(part) for part in mixed)
+    return red, green, blue
+
+
+def label_panel(ax: Axes, letter: str, title: str = "") -> None:
+    """Write "(a) title" above a panel."""
+    ax.set_title(f"({letter}) {title}".rstrip())
+
+
+def draw_cells(
+    ax: Axes,
+    grid: Grid,
+    values: NDArray[np.float64],
+    *,
+    norm: Normalize,
+    colours: str | Colormap = MAP_COLOURS,
+) -> AxesImage:
+    """Draw a value per cell, true to scale, with axes in metres.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+    grid : Grid
+        Where the cells lie.
+    values : (n_y, n_x) float64, may be masked
+        One value per cell.
+    norm : matplotlib.colors.Normalize
+        From values to colours.
+    colours : str or Colormap
+        Colour map.
+    """
+    half = grid.cell_size_m / 2
+    extent = (grid.x[0] - half, grid.x[-1] + half, grid.y[0] - half, grid.y[-1] + half)
+    image = ax.imshow(values, origin="lower", extent=extent, norm=norm, cmap=colours)
+    ax.set_aspect("equal")
+    for axis, name in ((ax.xaxis, "$x$ [m]"), (ax.yaxis, "$y$ [m]")):
+        axis.set_label_text(name)
+        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    return image
+
+
+def draw_walls(ax: Axes, plan: FloorPlan, height_m: float, colour: str = INK) -> None:
+    """Draw the walls that are solid at a height [m]."""
+    walls = LineCollection(
+        list(plan.solid_segments(height_m)), colors=colour, linewidths=0.7, capstyle="round"
+    )
+    walls.set_gid("walls")
+    walls.set_clip_on(False)
+    ax.add_collection(walls, autolim=False)
+
+
+def draw_source(ax: Axes, plan: FloorPlan) -> Line2D:
+    """Mark the source with a star."""
+    (mark,) = ax.plot(
+        *[[c] for c in plan.source[:2]],
+        marker="*",
+        markersize=9,
+        color=SOURCE,
+        markeredgecolor="white",
+        markeredgewidth=0.7,
+        linestyle="none",
+        label="source",
+        zorder=5,
+        gid="source",
+    )
+    return mark
+
+
+def draw_start(ax: Axes, plan: FloorPlan) -> Line2D:
+    """Mark the start with a ring."""
+    (mark,) = ax.plot(
+        *[[c] for c in plan.start],
+        marker="o",
+        markersize=5,
+        color=START,
+        markeredgecolor=INK,
+        markeredgewidth=0.9,
+        linestyle="none",
+        label="start",
+        zorder=5,
+        gid="start",
+    )
+    return mark
+
+
+def draw_flight(ax: Axes, positions: NDArray[np.float64], agent: str) -> Line2D:
+    """Draw a flight through positions (n, 2) [m], in its agent's colour on a white edge."""
+    (line,) = ax.plot(
+        positions[:, 0],
+        positions[:, 1],
+        color=AGENT_COLOURS[agent],
+        linewidth=1.5,
+        solid_joinstyle="round",
+        path_effects=[withStroke(linewidth=2.7, foreground="white")],
+        zorder=4,
+        gid=f"flight:{agent}",
+    )
+    return line
