@@ -82,10 +82,17 @@ class Wall:
         return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
 
     def point_at(self, s: float) -> Point:
-        """Plan-view point (x, y) [m] at the distance `s` [m] from the start; exact at both ends."""
-        t = s / self.length_m
+        """Plan-view point (x, y) [m] at the distance `s` [m] from the start.
+
+        Exact at both ends, and wherever the wall runs along an axis and the numbers are whole.
+        """
+        if s == self.length_m:
+            return self.end
         (x0, y0), (x1, y1) = self.start, self.end
-        return ((1 - t) * x0 + t * x1, (1 - t) * y0 + t * y1)
+        return (
+            x0 + s * ((x1 - x0) / self.length_m),
+            y0 + s * ((y1 - y0) / self.length_m),
+        )
 
 
 class Panel(NamedTuple):

@@ -129,7 +129,8 @@ def _carry_on(end: Vertex, before: Vertex, lines: list[shapely.LineString]) -> s
 
 def _faces(segments: list[Segment], sheets: Sheets) -> list[shapely.Polygon]:
     """Polygons that the segments enclose within the footprint."""
-    polygons = shapely.get_parts(shapely.polygonize(shapely.linestrings(np.array(segments))))
+    lines = [shapely.LineString(segment) for segment in segments]
+    polygons = shapely.get_parts(shapely.polygonize(lines))
     inside = [p for p in polygons if sheets.footprint.covers(p.representative_point())]
     covered = sum(p.area for p in inside)
     if abs(covered - sheets.footprint.area) > 1e-4:

@@ -19,7 +19,7 @@ from raytrace.kernels.strips import StripTree, edge_frame, grow_strips, hit_from
 from raytrace.kernels.tracing import Record, Sums
 from raytrace.kernels.unfolding import most_items, new_leg
 from raytrace.kernels.upright_edges import Edge, LegsIn, legs_to_edge, sum_upright_edge
-from raytrace.kernels.utd import Wedge
+from raytrace.kernels.utd import new_wedge
 from raytrace.preparing import Tracing
 
 Floats = NDArray[np.float64]
@@ -76,7 +76,7 @@ class OverUprightEdge:
         self._vertex = edge.vertex
         self._edge = Edge(
             edge.x, edge.y, edge.z_low, edge.z_high, edge.o_face_azimuth,
-            Wedge(edge.wedge_n, edge.o_material, edge.n_material),
+            new_wedge(edge.wedge_n, edge.o_material, edge.n_material),
         )  # fmt: skip
 
     @cached_property

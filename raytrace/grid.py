@@ -51,8 +51,8 @@ class Grid:
         n_x = max(1, int(np.floor((x_max - x_min + half) / cell_size_m - 1e-9)))
         n_y = max(1, int(np.floor((y_max - y_min + half) / cell_size_m - 1e-9)))
         return cls(
-            x_min + half + cell_size_m * np.arange(n_x),
-            y_min + half + cell_size_m * np.arange(n_y),
+            x_min + half + cell_size_m * np.arange(n_x, dtype=np.float64),
+            y_min + half + cell_size_m * np.arange(n_y, dtype=np.float64),
             float(height_m),
             float(cell_size_m),
         )

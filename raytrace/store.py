@@ -5,7 +5,7 @@
 """
 
 import os
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from raytrace.antennas import HalfWaveDipole, Isotropic
 from raytrace.errors import MapFileError
@@ -32,7 +33,7 @@ _ANTENNAS = {"HalfWaveDipole": HalfWaveDipole, "Isotropic": Isotropic}
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
+def whole_file(path: Path) -> Generator[Path]:
     """Give a temporary file beside `path` that takes its place if all goes well."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
@@ -121,12 +122,12 @@ def _read(file: h5py.File, path: Path) -> RadioMap:
     if missing:
         raise MapFileError(f"{path}: dataset {missing[0]!r} is missing; make the map anew")
     grid = Grid(
-        file["x"][:],
-        file["y"][:],
+        _array(file, "x"),
+        _array(file, "y"),
         float(attributes["receiver_height_m"]),
         float(attributes["cell_size_m"]),
     )
-    layers = {name: file[name][:] for name in _DATASETS}
+    layers = {name: _array(file, name) for name in _DATASETS}
     for name, layer in layers.items():
         if layer.shape != grid.shape or np.isnan(layer).any():
             raise MapFileError(
@@ -145,6 +146,13 @@ def _read(file: h5py.File, path: Path) -> RadioMap:
             k.removeprefix(prefix): _plain(v) for k, v in attributes.items() if k.startswith(prefix)
         },
     )
+
+
+def _array(file: h5py.File, name: str) -> NDArray[Any]:
+    dataset = file[name]
+    if not isinstance(dataset, h5py.Dataset):
+        raise TypeError(f"{name!r} is no dataset")
+    return np.asarray(dataset[()])
 
 
 def _transmitter(attributes: dict[str, Any]) -> Transmitter:

@@ -37,7 +37,7 @@ def sum_paths(
     for done, part in enumerate(_in_order(tracing, families, threads or default_threads()), 1):
         total.field[:] += part.field
         total.power[:] += part.power
-        total.count[:] += part.count
+        total.n_paths[:] += part.n_paths
         if progress is not None:
             progress(done, len(families))
     return total

@@ -76,7 +76,7 @@ def _write_out(tracing: Tracing, family: Family) -> Paths:
     config = tracing.config
     sums = new_sums(len(tracing.trace.receivers), config.max_reflections)
     family.add_to(sums, new_record(0))
-    n = int(sums.count.sum())
+    n = int(sums.n_paths.sum())
     record = new_record(n)
     most = config.max_reflections + config.max_diffractions
     points = np.zeros((n, most + 2, 3))
@@ -126,7 +126,7 @@ def compute_radio_map(
     return RadioMap(
         rss_dbm=_dbm(sums.power, sums, source).reshape(grid.shape),
         rss_coherent_dbm=_dbm(np.abs(sums.field) ** 2, sums, source).reshape(grid.shape),
-        path_count=sums.count.sum(axis=1).reshape(grid.shape),
+        path_count=sums.n_paths.sum(axis=1).reshape(grid.shape),
         grid=grid,
         transmitter=source,
         config=config,
@@ -136,7 +136,7 @@ def compute_radio_map(
 
 def _dbm(power: Floats, sums: Sums, source: Transmitter) -> Floats:
     """Received power [dBm] of a power gain; -inf without a path."""
-    reached = sums.count.any(axis=1) & (power > 0.0)
+    reached = sums.n_paths.any(axis=1) & (power > 0.0)
     dbm = np.full(len(power), -np.inf)
     dbm[reached] = source.power_dbm + 10.0 * np.log10(power[reached])
     return dbm

@@ -7,7 +7,7 @@ closed on the side that was its right one at the root, so of two beams that shar
 one holds it.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,9 @@ and partial walls so far."""
 
 IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y = range(6)
 """Columns of `Tree.beam` [m]: the root's image, and the corners of the window."""
+
+
+Rows = TypeVar("Rows", bound=NDArray[Any])
 
 
 class Tree(NamedTuple):
@@ -51,9 +54,9 @@ class Targets(NamedTuple):
 
 
 @jit()
-def enlarged(rows: NDArray[np.generic]) -> NDArray[np.generic]:
+def enlarged(rows: Rows) -> Rows:
     """Copy of an array with room for twice as many rows."""
-    more = np.empty((2 * len(rows), rows.shape[1]), rows.dtype)
+    more: Any = np.empty((2 * len(rows), rows.shape[1]), rows.dtype)
     for i in range(rows.shape[0]):
         for k in range(rows.shape[1]):
             more[i, k] = rows[i, k]
@@ -61,7 +64,7 @@ def enlarged(rows: NDArray[np.generic]) -> NDArray[np.generic]:
 
 
 @jit(allocates=False)
-def copy_row(rows: NDArray[np.generic], to: int, source: int) -> None:
+def copy_row(rows: NDArray[Any], to: int, source: int) -> None:
     """rows[to] = rows[source], much faster to compile."""
     for k in range(rows.shape[1]):
         rows[to, k] = rows[source, k]

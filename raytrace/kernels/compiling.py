@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba.core import config
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -32,7 +33,7 @@ def _use_own_cache() -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         folder = Path(tempfile.gettempdir()) / f"rssnav-kernels-{digest.hexdigest()[:16]}"
-    numba.config.CACHE_DIR = str(folder)
+    config.CACHE_DIR = str(folder)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 _use_own_cache()
@@ -53,7 +54,7 @@ def jit(
         Whether it makes arrays. One that does not is spared the counting of references, which
         otherwise takes most of the time of a loop that passes arrays in tuples.
     """
-    return numba.njit(
+    return numba.njit(  # pyright: ignore[reportCallIssue]
         cache=True,
         nogil=True,
         inline=inline,

@@ -20,7 +20,7 @@ from raytrace.kernels.unfolding import (
     unfold,
 )
 from raytrace.kernels.upright_edges import write_angles
-from raytrace.kernels.utd import Wedge, common_factor, diffraction, wedge_terms
+from raytrace.kernels.utd import common_factor, diffraction, new_wedge, wedge_terms
 
 
 class Rim(NamedTuple):
@@ -175,7 +175,7 @@ def sum_level_edge(
                         continue
                     sums.field[r] += gain
                     sums.power[r] += gain.real * gain.real + gain.imag * gain.imag
-                    sums.count[r, order + bounces[a] + bounces[b]] += 1
+                    sums.n_paths[r, order + bounces[a] + bounces[b]] += 1
                     recorded(record, hit, p, (a, b), gain)
 
 
@@ -327,8 +327,8 @@ def rim_diffraction(
     phi_out = math.atan2(h[1], rim.up * (path.z_receiver - rim.z))
     write_angles(phi_in, 2.0, work.angles_in)
     write_angles(phi_out, 2.0, work.angles_out)
-    terms = wedge_terms(2.0, phi_out, work.angles_out, phi_in, work.angles_in)
+    wedge = new_wedge(2.0, rim.slab, rim.slab)
+    terms = wedge_terms(wedge, phi_out, work.angles_out, phi_in, work.angles_in)
     product = path.before * path.after / (path.before + path.after)
     spread = math.sqrt(4.0 * math.pi / radio.wavelength * product) * sin_beta
-    wedge = Wedge(2.0, rim.slab, rim.slab)
     return diffraction(radio, wedge, terms, spread, sin_beta)

@@ -142,17 +142,17 @@ def upright_points(
     z, height = trace.source[2], trace.radio.height
     for path in range(record.used[0]):
         hit, p = record.key[path, 0], record.key[path, 1]
+        leg_in = Leg(legs_in.items[p], legs_in.marks[p])
+        n_in, length_in = int(legs_in.n_items[p]), float(legs_in.length[p])
         r, i = hits[hit, 0], hits[hit, 1]
         end = (trace.receivers[r, 0], trace.receivers[r, 1])
         n, length, _, _ = unfold(trace.plan, tree.link, tree.beam, i, end, leg)
-        length_in = legs_in.length[p]
         slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / (length_in + length)
         z_edge = z + slope * length_in
         row, kind = points[path], kinds[path]
         k = start_path(trace, row, kind)
-        leg_in = Leg(legs_in.items[p], legs_in.marks[p])
         at = (edge.x, edge.y)
-        k = add_leg(leg_in, legs_in.n_items[p], length_in, (z, slope, height), at, row, kind, k)
+        k = add_leg(leg_in, n_in, length_in, (z, slope, height), at, row, kind, k)
         k = add_point(row, kind, k, DIFFRACTION, (edge.x, edge.y, folded(z_edge, height)))
         k = add_leg(leg, n, length, (z_edge, slope, height), end, row, kind, k)
         finish_path(trace, r, row, k)
@@ -176,7 +176,8 @@ def level_points(
     height, frame = trace.radio.height, rim.frame
     z_in, bounces = trace.source_z, trace.image_bounces
     for path in range(record.used[0]):
-        hit, p, a, b = record.key[path]
+        hit, p = int(record.key[path, 0]), int(record.key[path, 1])
+        a, b = int(record.key[path, 2]), int(record.key[path, 3])
         r, i = hits[hit, 0], hits[hit, 1]
         rise_in = rim.z - z_in[a]
         rise_out = trace.image_z[trace.level[r], b] - rim.z

@@ -82,8 +82,8 @@ def folded(z: float, height: float) -> float:
 @jit(inline="always")
 def material_at(view: PlanView, profile: int, z: float) -> int:
     """Material of a profile at height z, -1 where it is open."""
-    k = view.profile_bins[profile]
+    k = int(view.profile_bins[profile])
     last = view.profile_bins[profile + 1] - 1
     while k < last and z > view.bin_top[k]:
         k += 1
-    return view.bin_material[k]
+    return int(view.bin_material[k])

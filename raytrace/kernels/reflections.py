@@ -51,5 +51,5 @@ def sum_reflections(
             gain = upright * size * phasor(trace.radio.cis, distance / trace.radio.wavelength)
             sums.field[r] += gain
             sums.power[r] += gain.real * gain.real + gain.imag * gain.imag
-            sums.count[r, order + bounces] += 1
+            sums.n_paths[r, order + bounces] += 1
             recorded(record, hit, -1, (-1, k), gain)

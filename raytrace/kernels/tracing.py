@@ -53,13 +53,13 @@ class Sums(NamedTuple):
         (n,) complex sum of the paths' gains.
     power
         (n,) sum of their squared magnitudes.
-    count
+    n_paths
         (n, max_order + 1) number of paths by reflections.
     """
 
     field: NDArray[np.complex128]
     power: Floats
-    count: Ints
+    n_paths: Ints
 
 
 class Record(NamedTuple):

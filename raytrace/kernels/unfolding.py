@@ -116,9 +116,9 @@ def unfold(
 @jit(inline="always")
 def mark_of(view: PlanView, e: int, passed: bool) -> tuple[int, int]:
     """Kind of an item and what it stands for."""
-    profile = view.profile[e]
+    profile = int(view.profile[e])
     if view.kind[e] == WALL:
-        return REFLECT_WALL, view.bin_material[view.profile_bins[profile]]
+        return REFLECT_WALL, int(view.bin_material[view.profile_bins[profile]])
     if passed:
         return PASS_PARTIAL, profile
     return REFLECT_PARTIAL, profile

@@ -187,7 +187,7 @@ def sum_upright_edge(
             n_in, length_in = legs_in.n_items[p], legs_in.length[p]
             free_in = not is_constrained(leg_in, n_in)
             total = length_in + length
-            terms = wedge_terms(edge.wedge.n, phi, angles, legs_in.phi[p], legs_in.angles[p])
+            terms = wedge_terms(edge.wedge, phi, angles, legs_in.phi[p], legs_in.angles[p])
             size = trace.radio.wavelength / (4.0 * math.pi * math.sqrt(length_in * length * total))
             spread = math.sqrt(4.0 * math.pi / trace.radio.wavelength * length_in * length / total)
             for k in range(2 * (trace.max_order - order) + 1):
@@ -231,7 +231,7 @@ def sum_upright_edge(
                 gain = upright * scale * phasor(trace.radio.cis, turns)
                 field += gain
                 power += gain.real * gain.real + gain.imag * gain.imag
-                sums.count[r, order + bounces] += 1
+                sums.n_paths[r, order + bounces] += 1
                 recorded(record, hit, p, (-1, k), gain * common)
         sums.field[r] += field * common
         sums.power[r] += power * (common.real * common.real + common.imag * common.imag)

@@ -32,11 +32,19 @@ class Wedge(NamedTuple):
         Free angle over pi.
     o_slab, n_slab
         Slabs of its faces.
+    cos_part, sin_part
+        Of pi / 2n.
+    cos_whole, sin_whole
+        Of n pi.
     """
 
     n: float
     o_slab: int
     n_slab: int
+    cos_part: float
+    sin_part: float
+    cos_whole: float
+    sin_whole: float
 
 
 class WedgeTerms(NamedTuple):
@@ -49,6 +57,15 @@ class WedgeTerms(NamedTuple):
     detour: tuple[float, float, float, float]
     o_cosine: float
     n_cosine: float
+
+
+@jit()
+def new_wedge(n: float, o_slab: int, n_slab: int) -> Wedge:
+    """Wedge of a free angle n pi."""
+    part, whole = 0.5 * math.pi / n, n * math.pi
+    return Wedge(
+        n, o_slab, n_slab, math.cos(part), math.sin(part), math.cos(whole), math.sin(whole)
+    )
 
 
 @jit(inline="always", fast=True)
@@ -75,29 +92,32 @@ def cotangent(sine: float, cosine: float) -> float:
 
 
 @jit(inline="always", fast=True)
-def detour(n: float, beta: float, cos_half: float, sin_half: float, sign: float) -> float:
-    """|cos((2 pi n N - beta) / 2)|, N the integer nearest to (sign pi + beta) / (2 pi n)."""
-    turns = math.floor((sign * math.pi + beta) / (2.0 * math.pi * n) + 0.5)
-    if turns == 0.0:
-        return abs(cos_half)
-    angle = n * math.pi * turns
-    return abs(math.cos(angle) * cos_half + math.sin(angle) * sin_half)
+def detour(wedge: Wedge, beta: float, cos_half: float, sin_half: float, sign: float) -> float:
+    """|cos((2 pi n N - beta) / 2)|, N = -1, 0, 1 nearest to (sign pi + beta) / (2 pi n)."""
+    nearest = (sign * math.pi + beta) / (2.0 * math.pi * wedge.n)
+    if nearest >= 0.5:
+        return abs(wedge.cos_whole * cos_half + wedge.sin_whole * sin_half)
+    if nearest < -0.5:
+        return abs(wedge.cos_whole * cos_half - wedge.sin_whole * sin_half)
+    return abs(cos_half)
 
 
 @jit(inline="always", fast=True)
-def wedge_terms(n: float, phi: float, at: Floats, phi_source: float, source: Floats) -> WedgeTerms:
+def wedge_terms(
+    wedge: Wedge, phi: float, at: Floats, phi_source: float, source: Floats
+) -> WedgeTerms:
     """Terms of one pair of directions.
 
     Parameters
     ----------
-    n
-        Free angle over pi.
+    wedge
+        The wedge.
     phi, phi_source
         Angles of the diffracted and of the incident ray from the o-face [rad].
     at, source
         (6,) their `wedge_angles`.
     """
-    sp, cp = math.sin(math.pi / (2.0 * n)), math.cos(math.pi / (2.0 * n))
+    sp, cp = wedge.sin_part, wedge.cos_part
     ch, sh = at[COSINE_WEDGE], at[SINE_WEDGE]
     gh, fh = source[COSINE_WEDGE], source[SINE_WEDGE]
     cos_minus, sin_minus = ch * gh + sh * fh, sh * gh - ch * fh
@@ -113,10 +133,10 @@ def wedge_terms(n: float, phi: float, at: Floats, phi_source: float, source: Flo
     cos_plus, sin_plus = ch * gh - sh * fh, sh * gh + ch * fh
     minus, plus = phi - phi_source, phi + phi_source
     detours = (
-        detour(n, minus, cos_minus, sin_minus, 1.0),
-        detour(n, minus, cos_minus, sin_minus, -1.0),
-        detour(n, plus, cos_plus, sin_plus, 1.0),
-        detour(n, plus, cos_plus, sin_plus, -1.0),
+        detour(wedge, minus, cos_minus, sin_minus, 1.0),
+        detour(wedge, minus, cos_minus, sin_minus, -1.0),
+        detour(wedge, plus, cos_plus, sin_plus, 1.0),
+        detour(wedge, plus, cos_plus, sin_plus, -1.0),
     )
     return WedgeTerms(cotangents, detours, at[ROOT_O] * source[ROOT_O], at[ROOT_N] * source[ROOT_N])
 

@@ -1,0 +1,55 @@
+# Everything runs in a virtual environment that make sets up itself: Python 3.11 and make suffice.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+RESULTS ?= results
+QUICK ?=
+
+.DEFAULT_GOAL := help
+.PHONY: help install maps experiments test lint types contracts bench docs dist clean
+
+help: ## list these targets
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1|/' | \
+		awk -F'|' '{ printf "  make %-12s %s\n", $$1, $$2 }'
+
+install: $(VENV)/installed ## make the virtual environment and install everything into it
+
+$(VENV)/installed: pyproject.toml constraints.txt
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "rssnav needs Python 3.11 or newer, this is " + sys.version.split()[0] + ": call make PYTHON=python3.11")'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,docs]'
+	@touch $@
+
+maps: install ## compute the RSS maps of both scenarios that are not current
+	$(BIN)/rssnav maps --out $(RESULTS)/maps
+
+experiments: install ## the whole paper: maps, training, figures, tables, report (QUICK=1: fewer runs)
+	$(BIN)/rssnav experiments --out $(RESULTS) $(if $(QUICK),--quick)
+
+test: install ## run the tests
+	$(BIN)/python -m pytest
+
+lint: install ## check style and format
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: install ## check types
+	$(BIN)/basedpyright
+
+contracts: install ## check that the packages keep their layers
+	$(BIN)/lint-imports
+
+bench: install ## measure the speed of tracer and learning, side by side with plain C
+	$(BIN)/python -m pytest tests/benchmarks --benchmark-enable --benchmark-only
+
+docs: install ## build the documentation into docs/_build/html
+	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
+
+dist: install ## build wheel and source archive into dist/
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check build
+	$(BIN)/python -m build
+
+clean: ## remove the environment, results and caches
+	rm -rf $(VENV) $(RESULTS) build dist docs/_build .pytest_cache .ruff_cache .hypothesis .benchmarks
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
