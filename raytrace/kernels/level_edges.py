@@ -310,7 +310,7 @@ def rim_gain(
 
 @jit(inline="always", fast=True)
 def turned_to_edge(frame: Floats, ux: float, uy: float, sin_el: float) -> tuple[float, float]:
-    """Components of tau and psi along a level edge (docs/theory.md, eq. 24)."""
+    """Components of tau and psi along a level edge (docs/theory.md, eqs. 23-24)."""
     tx, ty = frame[0], frame[1]
     return -sin_el * (ux * tx + uy * ty), ux * ty - uy * tx
 
