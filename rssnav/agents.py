@@ -56,6 +56,9 @@ class QLearning:
     max_steps : int
         Steps after which an episode is cut. Not stated in the paper. A cut episode is truncated,
         not terminated: its last step bootstraps like any other.
+    rule : {"q_learning", "sarsa", "double_q"}
+        What a step learns: Algorithm 1, or one of two rules it is compared with, SARSA and Double
+        Q-learning. Those need a row of Q per cell, so steady readings that are all different.
     """
 
     gamma: float = 0.98
@@ -71,6 +74,7 @@ class QLearning:
     decay: Literal["step", "episode"] = "step"
     tie_break: Literal["first", "random"] = "first"
     max_steps: int = 20_000
+    rule: Literal["q_learning", "sarsa", "double_q"] = "q_learning"
 
     def __post_init__(self) -> None:
         _require(0.0 <= self.gamma <= 1.0, "gamma", self.gamma, "in [0, 1]")
@@ -93,6 +97,7 @@ _CHOICES = {
     "maximum_over": ("possible", "all"),
     "decay": ("step", "episode"),
     "tie_break": ("first", "random"),
+    "rule": ("q_learning", "sarsa", "double_q"),
 }
 
 

@@ -1,4 +1,4 @@
-"""One realisation of Q-learning: the loop's arrays and the two loops behind one interface."""
+"""One realisation of learning: the loop's arrays, and the loops behind one interface."""
 
 from __future__ import annotations
 
@@ -10,12 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.agents import Agent, DecisionProcess, QLearning, RssAgent
-from rssnav.kernels import common, sensed, tabular
+from rssnav.kernels import common, sensed, tabular, temporal_difference
 from rssnav.kernels.common import Moves, Parameters, Run
 from rssnav.states import ExactStates, GoalRule, SensedStates, sensed_states
 from rssnav.world import GridWorld
 
 N_ACTIONS = 8
+
+_RULES = {
+    "sarsa": temporal_difference.SARSA,
+    "double_q": temporal_difference.DOUBLE_Q,
+}
 
 
 class Learner(Protocol):
@@ -56,7 +61,15 @@ class LearningProblem:
 
     @classmethod
     def of(cls, world: GridWorld, agent: Agent, learning: QLearning) -> LearningProblem:
-        """Apply an agent to a world. Raises :class:`~rssnav.world.WorldError`."""
+        """Apply an agent to a world.
+
+        Raises
+        ------
+        WorldError
+            When the agent cannot learn in this world.
+        ValueError
+            When the rule cannot learn the agent's states.
+        """
         process = agent.decision_process(world, learning)
         states = None
         if isinstance(agent, RssAgent) and not _has_a_row_per_cell(agent, world):
@@ -64,6 +77,12 @@ class LearningProblem:
                 agent.terminal_dbm, learning.goal_reward, learning.goal_reward_is == "instead"
             )
             states = sensed_states(agent.states, agent.fluctuation, world.rss_dbm, goal)
+        if states is not None and learning.rule != "q_learning":
+            raise ValueError(
+                f"rule: {learning.rule!r} needs a row of Q per cell, so an RssAgent with "
+                "ExactStates on a map whose values all differ, or a LocationAgent; states made "
+                "from readings can only learn by 'q_learning'"
+            )
         return cls(process, learning, states)
 
     @property
@@ -73,6 +92,9 @@ class LearningProblem:
 
     def learner(self, generators: NDArray[np.uint64], episodes: int) -> Learner:
         """Begin a realisation of at most ``episodes`` from two xoshiro256++ states (8,)."""
+        if self.learning.rule != "q_learning":
+            rule = _RULES[self.learning.rule]
+            return TemporalDifferenceLearner(self, generators, episodes, rule)
         if self.states is None:
             return TabularLearner(self, generators, episodes)
         return SensedLearner(self, self.states, generators, episodes)
@@ -132,22 +154,28 @@ def _new_run(
     )
 
 
+def _initial_q(problem: LearningProblem) -> NDArray[np.float64]:
+    """Q (S, 8) before learning. Blocked actions are -inf unless the maximum runs over all."""
+    process, learning = problem.process, problem.learning
+    q = np.full(process.next_state.shape, learning.initial_q)
+    if learning.maximum_over == "possible":
+        q[process.next_state < 0] = -np.inf
+    q[process.terminal] = 0.0
+    return q
+
+
 class TabularLearner:
-    """One row of Q per cell. Blocked actions are -inf unless the maximum runs over all."""
+    """Q-learning with one row of Q per cell."""
 
     def __init__(
         self, problem: LearningProblem, generators: NDArray[np.uint64], episodes: int
     ) -> None:
-        process, learning = problem.process, problem.learning
+        process = problem.process
         self.moves = moves_of(process)
-        self.parameters = parameters_of(learning)
+        self.parameters = parameters_of(problem.learning)
         self._reward = process.reward.reshape(-1)
         self._blocked = process.next_state < 0
-        q = np.full((problem.n_states, N_ACTIONS), learning.initial_q)
-        if not self.parameters.all_actions:
-            q[self._blocked] = -np.inf
-        q[process.terminal] = 0.0
-        self.run = _new_run(problem, q, generators, episodes)
+        self.run = _new_run(problem, _initial_q(problem), generators, episodes)
         self.greedy = tabular.Greedy(
             value=np.empty(problem.n_states), action=np.empty(problem.n_states, dtype=np.uint8)
         )
@@ -168,6 +196,47 @@ class TabularLearner:
     def cell_values(self) -> NDArray[np.float64]:
         """Q of each cell, shape (S, 8); -inf where the step is impossible."""
         return np.where(self._blocked, -np.inf, self.run.q.reshape(-1, N_ACTIONS))
+
+    def n_labels(self) -> int:
+        """States the agent tells apart: the cells."""
+        return self._blocked.shape[0]
+
+
+class TemporalDifferenceLearner:
+    """Q-learning, SARSA or Double Q-learning with one row per cell, by the slower loop."""
+
+    def __init__(
+        self,
+        problem: LearningProblem,
+        generators: NDArray[np.uint64],
+        episodes: int,
+        rule: int,
+    ) -> None:
+        self.moves = moves_of(problem.process)
+        self.parameters = parameters_of(problem.learning)
+        self._reward = problem.process.reward.reshape(-1)
+        self._blocked = problem.process.next_state < 0
+        self._rule = rule
+        tables = 2 if rule == temporal_difference.DOUBLE_Q else 1
+        q = np.concatenate([_initial_q(problem)] * tables)
+        self.run = _new_run(problem, q, generators, episodes)
+
+    def advance(self, until_episode: int) -> None:
+        """Fly to ``until_episode``, or to the episode in which the run converges."""
+        temporal_difference.learn(
+            self.moves,
+            self._reward,
+            self.parameters,
+            self.run,
+            self._rule,
+            self.run.tie_generator if self.parameters.random_ties else None,
+            until_episode,
+        )
+
+    def cell_values(self) -> NDArray[np.float64]:
+        """Q of each cell (of two tables the mean), shape (S, 8); -inf where impossible."""
+        q = self.run.q.reshape(-1, *self._blocked.shape).mean(axis=0)
+        return np.where(self._blocked, -np.inf, q)
 
     def n_labels(self) -> int:
         """States the agent tells apart: the cells."""

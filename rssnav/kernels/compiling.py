@@ -31,8 +31,11 @@ def sources_digest(folder: Path) -> str:
 
 
 @cache
-def _cache_folder() -> str:
-    """Folder for the machine code of these sources, made if it is missing."""
+def cache_folder() -> Path:
+    """Folder for the machine code of these sources; the user may choose it for all of numba."""
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    if chosen:
+        return Path(chosen)
     name = f"learning-{sources_digest(Path(__file__).parent)}"
     root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     folder = root / "rssnav" / "kernels" / name
@@ -40,18 +43,15 @@ def _cache_folder() -> str:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         folder = Path(tempfile.gettempdir()) / f"rssnav-{name}"
-    return str(folder)
+    return folder
 
 
 @contextmanager
 def _own_cache() -> Generator[None, None, None]:
-    """Point numba at that folder, unless the user has chosen one; it looks while decorating."""
-    if os.environ.get("NUMBA_CACHE_DIR"):
-        yield
-        return
+    """Point numba at that folder, and nobody else's functions: it looks while decorating."""
     settings: Any = config  # filled in when numba is imported
     before = settings.CACHE_DIR
-    settings.CACHE_DIR = _cache_folder()
+    settings.CACHE_DIR = str(cache_folder())
     try:
         yield
     finally:
