@@ -29,6 +29,7 @@ NO_PATH = "#e3e3e3"
 HATCH = "xxxx"
 FREE_WALL = "#b9b3a8"
 SCALE_M_PER_INCH = 11.0
+LEGEND_COLUMN_INCH = 1.8
 LENGTH_TOLERANCE_M = 1e-6
 SIZE_RANGE_INCH = (4.0, 10.0)
 
@@ -95,7 +96,7 @@ def save_map_picture(plan: FloorPlan, radio_map: RadioMap, path: str | Path) -> 
     figure.legend(
         handles=_legend_handles(plan, radio_map.grid.height_m, has_dark_cells),
         loc="outside lower center",
-        ncols=5,
+        ncols=int(figure.get_figwidth() / LEGEND_COLUMN_INCH),
         frameon=False,
         fontsize=9,
     )

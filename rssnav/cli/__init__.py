@@ -1,0 +1,51 @@
+"""The command line ``rssnav``.
+
+One module a command. Results go to standard output, progress and notes to standard error; exit
+codes are 0 done, 1 could not be done, 2 wrong usage, 130 interrupted.
+"""
+
+from importlib.metadata import version
+from typing import Annotated
+
+import typer
+
+from rssnav.cli import doctor, paths, plan, radio_maps, train
+from rssnav.cli.failures import Commands
+from rssnav.cli.options import examples
+
+app = typer.Typer(
+    cls=Commands,
+    rich_markup_mode="rich",
+    no_args_is_help=True,
+    pretty_exceptions_show_locals=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=examples(
+        "rssnav plan show scenario1",
+        "rssnav map scenario1 -o s1.h5 --picture s1.png",
+        "rssnav train scenario1 --map s1.h5 --runs 10",
+        "rssnav experiments --quick",
+    ),
+)
+plan.add_to(app)
+radio_maps.add_to(app)
+paths.add_to(app)
+train.add_to(app)
+doctor.add_to(app)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(f"rssnav {version('rssnav')}")
+        raise typer.Exit
+
+
+@app.callback()
+def main(
+    _version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    """Exact indoor radio maps, and a UAV that learns to fly through them to a hidden phone."""

@@ -1,0 +1,164 @@
+"""What commands write: tables and JSON on standard output, progress on standard error."""
+
+import json
+import math
+import sys
+import time
+from collections.abc import Callable, Generator, Iterable, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskID,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.table import Table
+from rich.text import Text
+
+StageProgress = Callable[[str, int, int], None]
+"""Called with the name of a stage, and how many of its parts are done of how many."""
+
+LINE_EVERY_S = 2.0
+COMPILING = "compiling kernels (first use only)"
+
+
+def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Print a table; without a terminal as plain text, no cell cut or wrapped.
+
+    Parameters
+    ----------
+    columns
+        Headings; one that begins with ">" is set to the right, as are its cells.
+    rows
+        Cells, written with `str`.
+    """
+    cells = [[str(cell) for cell in row] for row in rows]
+    console = Console()
+    if console.is_terminal:
+        console.print(_rich_table(columns, cells))
+        return
+    names = [column.removeprefix(">") for column in columns]
+    widths = [max(map(len, column)) for column in zip(names, *cells, strict=True)]
+    for row in (names, *cells):
+        aligned = [
+            cell.rjust(width) if column.startswith(">") else cell.ljust(width)
+            for cell, width, column in zip(row, widths, columns, strict=True)
+        ]
+        print("  ".join(aligned).rstrip())
+
+
+def _rich_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for column in columns:
+        justify = "right" if column.startswith(">") else "left"
+        table.add_column(Text(column.removeprefix(">")), justify=justify, no_wrap=True)
+    for row in rows:
+        table.add_row(*map(Text, row))
+    return table
+
+
+def print_pairs(pairs: Iterable[tuple[str, object]]) -> None:
+    """Print names and values, one pair a line, the values below each other."""
+    pairs = list(pairs)
+    width = max(len(name) for name, _ in pairs)
+    for name, value in pairs:
+        print(f"{name:<{width}}  {value}")
+
+
+def print_json(value: Any) -> None:
+    """Print strict JSON: numbers that are not finite become null."""
+    print(json.dumps(_jsonable(value), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def _jsonable(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _jsonable(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_jsonable(item) for item in value]
+    if hasattr(value, "tolist"):
+        return _jsonable(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def note(sentence: str) -> None:
+    """Write a line to standard error."""
+    print(sentence, file=sys.stderr)
+
+
+@contextmanager
+def stage_progress(compiles: bool = False) -> Generator[StageProgress]:
+    """Show the progress of stages: bars with the time left on a terminal, else a line at times.
+
+    Parameters
+    ----------
+    compiles : bool
+        Whether kernels will have to be compiled before the first stage gets on.
+    """
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        if compiles:
+            note(COMPILING)
+        yield _Lines()
+        return
+    with _bars(console) as progress:
+        yield _Bars(progress, COMPILING if compiles else "preparing")
+
+
+@contextmanager
+def one_progress(stage: str, compiles: bool = False) -> Generator[Callable[[int, int], None]]:
+    """Show the progress of a single stage; see `stage_progress`."""
+    with stage_progress(compiles) as show:
+        yield lambda done, total: show(stage, done, total)
+
+
+def _bars(console: Console) -> Progress:
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+    )
+
+
+class _Bars:
+    """A bar for each stage; one of unknown length until the first stage gets on."""
+
+    def __init__(self, progress: Progress, first: str) -> None:
+        self._progress = progress
+        self._waiting: TaskID | None = progress.add_task(first, total=None)
+        self._tasks: dict[str, TaskID] = {}
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        if self._waiting is not None:
+            self._progress.remove_task(self._waiting)
+            self._waiting = None
+        if stage not in self._tasks:
+            self._tasks[stage] = self._progress.add_task(stage, total=total)
+        self._progress.update(self._tasks[stage], completed=done, total=total)
+
+
+class _Lines:
+    """A line for a stage every few seconds and at its end, if it took as long."""
+
+    def __init__(self) -> None:
+        self._last_s: dict[str, float] = {}
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        now_s = time.monotonic()
+        last_s = self._last_s.setdefault(stage, now_s)
+        if now_s - last_s >= LINE_EVERY_S:
+            self._last_s[stage] = now_s
+            note(f"{stage}: {done} of {total} ({100 * done // max(total, 1)} %)")

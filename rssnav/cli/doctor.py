@@ -1,0 +1,136 @@
+"""``rssnav doctor``: what is installed, and whether it works."""
+
+import platform
+import time
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+import typer
+
+import floorplans
+from raytrace import TraceConfig, Transmitter, trace_paths
+from raytrace.materials import MATERIAL_EDITION
+from raytrace.summing import default_threads
+from raytrace.trace import TRACER_VERSION
+from rssnav import GridWorld, LocationAgent, train
+from rssnav.cli.console import note, print_json, print_pairs
+from rssnav.cli.failures import COULD_NOT, complain
+from rssnav.cli.kernel_cache import KernelCache, learning_cache, tracer_cache
+from rssnav.cli.options import Json, examples
+from rssnav.maps import make_map, scene_of
+
+LIBRARIES = ("numpy", "numba", "scipy", "shapely", "trimesh", "h5py", "matplotlib", "typer")
+BOX = """
+name = "box of 6 m x 4 m"
+format = 1
+height_m = 3
+floor_material = "concrete"
+ceiling_material = "concrete"
+source = [1.2, 1.3, 1.5]
+start = [5.5, 2.5]
+outline = [[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]]
+
+[[walls]]
+points = [[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]]
+material = "concrete"
+thickness_m = 0.2
+"""
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the command ``doctor``."""
+    parent.command("doctor", epilog=examples("rssnav doctor", "rssnav doctor --json"))(examine)
+
+
+def examine(as_json: Json = False) -> None:
+    """Print versions, threads and the state of the compiled kernels, and test the program."""
+    caches = {"tracer": tracer_cache(), "learning": learning_cache()}
+    if not all(cache.n_compiled for cache in caches.values()):
+        note("compiling kernels (first use only)")
+    started_s = time.perf_counter()
+    faults = [*_tracer_faults(), *_learning_faults()]
+    facts = _facts(caches, time.perf_counter() - started_s, faults)
+    if as_json:
+        print_json(facts)
+    else:
+        _print(facts, caches)
+    for fault in faults:
+        complain(fault)
+    if faults:
+        raise typer.Exit(COULD_NOT)
+
+
+def _tracer_faults() -> list[str]:
+    """Trace a box: line of sight as in free space, and six images of the first order."""
+    plan = floorplans.loads(BOX)
+    x, y, z = plan.source
+    receiver = np.array([[x + 4.0, y, z]])
+    source = Transmitter(plan.source)
+    paths = trace_paths(scene_of(plan), source, receiver, TraceConfig(1, 0))
+    faults: list[str] = []
+    if len(paths) != 7:
+        faults.append(f"tracer: {len(paths)} paths in a box, expected 1 + 6 images")
+    free_space = source.wavelength_m / (4.0 * np.pi * 4.0)
+    error_db = float(20.0 * np.log10(np.abs(paths.gain[0]) / free_space))
+    if abs(error_db) > 1e-3:
+        faults.append(f"tracer: line of sight {error_db:+.3f} dB off free space")
+    return faults
+
+
+def _learning_faults() -> list[str]:
+    """Train in a box: every flight reaches the source, and threads do not change the result."""
+    plan = floorplans.loads(BOX)
+    world = GridWorld.from_map(plan, make_map(plan, config=TraceConfig(1, 0)))
+    one, two = (
+        train(world, LocationAgent(), runs=2, episodes=200, threads=threads) for threads in (1, 2)
+    )
+    faults: list[str] = []
+    if not one.reached.all():
+        faults.append("learning: a trained agent does not reach the source in an empty box")
+    if not np.array_equal(one.steps, two.steps):
+        faults.append("learning: the result depends on the number of threads")
+    return faults
+
+
+def _facts(caches: dict[str, KernelCache], test_s: float, faults: list[str]) -> dict[str, Any]:
+    return {
+        "rssnav": version("rssnav"),
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "libraries": {name: version(name) for name in LIBRARIES},
+        "tracer_version": TRACER_VERSION,
+        "material_edition": MATERIAL_EDITION,
+        "threads": default_threads(),
+        "kernels": {
+            name: {
+                "folder": str(cache.folder),
+                "compiled": cache.n_compiled,
+                "bytes": cache.n_bytes,
+            }
+            for name, cache in caches.items()
+        },
+        "self_test_s": test_s,
+        "faults": faults,
+    }
+
+
+def _print(facts: dict[str, Any], caches: dict[str, KernelCache]) -> None:
+    print_pairs(
+        [
+            ("rssnav", f"{facts['rssnav']} (tracer {facts['tracer_version']})"),
+            ("python", f"{facts['python']} on {facts['platform']}"),
+            *facts["libraries"].items(),
+            ("materials", facts["material_edition"]),
+            ("threads", facts["threads"]),
+            *((f"{name} kernels", _state(cache)) for name, cache in caches.items()),
+            ("self test", f"{'failed' if facts['faults'] else 'passed'}, "
+                          f"{facts['self_test_s']:.1f} s"),
+        ]
+    )  # fmt: skip
+
+
+def _state(cache: KernelCache) -> str:
+    if not cache.n_compiled:
+        return f"were not compiled yet; kept in {cache.folder}"
+    return f"{cache.n_compiled} compiled, {cache.n_bytes / 1e6:.1f} MB in {cache.folder}"

@@ -1,0 +1,77 @@
+"""Arguments and options that several commands share."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import floorplans
+
+
+def _complete_plan(incomplete: str) -> list[str]:
+    return [name for name in floorplans.builtin_names() if name.startswith(incomplete)]
+
+
+Plan = Annotated[
+    str,
+    typer.Argument(
+        metavar="PLAN",
+        help="A built-in plan (rssnav plan list) or a TOML file.",
+        autocompletion=_complete_plan,
+        show_default=False,
+    ),
+]
+CellSize = Annotated[
+    float, typer.Option("--cell-size", metavar="M", min=0.05, help="Side of a cell in metres.")
+]
+Height = Annotated[
+    float, typer.Option("--height", metavar="M", help="Height of the receivers in metres.")
+]
+Reflections = Annotated[
+    int,
+    typer.Option("--reflections", metavar="N", min=0, max=20, help="Most reflections on a path."),
+]
+Diffractions = Annotated[
+    int,
+    typer.Option("--diffractions", metavar="N", min=0, max=1, help="Most diffractions on a path."),
+]
+Threads = Annotated[
+    int | None,
+    typer.Option(
+        "--threads",
+        metavar="N",
+        min=1,
+        help="How many to work with; the result does not depend on it.",
+        show_default="all processors",
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+Force = Annotated[
+    bool, typer.Option("--force", help="Make it again, and replace whatever is at FILE.")
+]
+Picture = Annotated[
+    Path | None,
+    typer.Option(
+        "--picture",
+        metavar="FILE",
+        help="Draw the map into a .png, .svg or .pdf.",
+        show_default=False,
+    ),
+]
+
+PICTURE_SUFFIXES = (".png", ".svg", ".pdf")
+
+
+def examples(*commands: str) -> str:
+    """Text below a command's help: command lines that work when pasted."""
+    return "\n\n".join(["Examples:", *(f"  {command}" for command in commands)])
+
+
+def check_suffix(path: Path | None, known: tuple[str, ...], option: str) -> None:
+    """Refuse a file whose name does not end in a known format's suffix, as wrong usage."""
+    if path is not None and path.suffix.lower() not in known:
+        found = f"the suffix {path.suffix!r}" if path.suffix else "no suffix"
+        raise typer.BadParameter(
+            f"{path} has {found}; the format follows from it: give one of {', '.join(known)}.",
+            param_hint=option,
+        )

@@ -1,0 +1,165 @@
+"""``rssnav map`` and ``rssnav maps``: radio maps of floor plans."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+import floorplans
+from floorplans import FloorPlan
+from raytrace import RadioMap, TraceConfig
+from rssnav.cli.console import note, print_json, print_pairs, stage_progress
+from rssnav.cli.kernel_cache import tracer_cache
+from rssnav.cli.options import (
+    PICTURE_SUFFIXES,
+    CellSize,
+    Diffractions,
+    Force,
+    Height,
+    Json,
+    Picture,
+    Plan,
+    Reflections,
+    Threads,
+    check_suffix,
+    examples,
+)
+from rssnav.maps import CELL_SIZE_M, HEIGHT_M, make_map
+
+SCENARIOS = ("scenario1", "scenario2")
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the commands ``map`` and ``maps``."""
+    parent.command(
+        "map",
+        epilog=examples(
+            "rssnav map flat -o flat.h5 --picture flat-map.png",
+            "rssnav map scenario1 -o s1-coarse.h5 --reflections 2",
+        ),
+    )(map_plan)
+    parent.command(
+        "maps", epilog=examples("rssnav maps", "rssnav maps --out results/maps --threads 2")
+    )(map_scenarios)
+
+
+def map_plan(
+    plan: Plan,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE", help="Where to keep the map (HDF5).")
+    ],
+    picture: Picture = None,
+    cell_size: CellSize = CELL_SIZE_M,
+    height: Height = HEIGHT_M,
+    reflections: Reflections = TraceConfig.max_reflections,
+    diffractions: Diffractions = TraceConfig.max_diffractions,
+    threads: Threads = None,
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
+    """Trace the radio map of a plan: RSS in every cell, from every path of bounded order.
+
+    A map that is up to date is not made again. Ctrl-C leaves the old file or none.
+    """
+    check_suffix(picture, PICTURE_SUFFIXES, "--picture")
+    loaded = floorplans.load(plan)
+    if not 0.0 < height < loaded.height_m:
+        raise typer.BadParameter(
+            f"{height:g} m is not between floor and ceiling of {plan}; give a height above 0 and "
+            f"below {loaded.height_m:g}.",
+            param_hint="--height",
+        )
+    with stage_progress(compiles=not tracer_cache().n_compiled) as show:
+        radio_map = make_map(
+            loaded,
+            output,
+            cell_size_m=cell_size,
+            height_m=height,
+            config=TraceConfig(reflections, diffractions),
+            threads=threads,
+            progress=lambda done, total: show(loaded.name, done, total),
+            notice=note,
+            force=force,
+        )
+    if picture is not None:
+        _draw(loaded, radio_map, picture)
+    facts = _facts(radio_map, output, picture)
+    if as_json:
+        print_json({"plan": plan, **facts})
+    else:
+        _print_facts(facts)
+
+
+def map_scenarios(
+    out: Annotated[Path, typer.Option(metavar="FOLDER", help="Where to write them.")] = Path(
+        "results/maps"
+    ),
+    threads: Threads = None,
+    force: Force = False,
+) -> None:
+    """Make the radio maps of the paper's two scenarios, with a picture each.
+
+    Only what has changed is made again.
+    """
+    with stage_progress(compiles=not tracer_cache().n_compiled) as show:
+        for name in SCENARIOS:
+            plan, file, picture = floorplans.load(name), out / f"{name}.h5", out / f"{name}.png"
+
+            def progress(done: int, total: int, stage: str = name) -> None:
+                show(stage, done, total)
+
+            radio_map = make_map(
+                plan, file, threads=threads, progress=progress, notice=note, force=force
+            )
+            if _is_older(picture, file):
+                _draw(plan, radio_map, picture)
+    for name in SCENARIOS:
+        print(out / f"{name}.h5")
+        print(out / f"{name}.png")
+
+
+def _is_older(picture: Path, map_file: Path) -> bool:
+    return not picture.exists() or picture.stat().st_mtime < map_file.stat().st_mtime
+
+
+def _draw(plan: FloorPlan, radio_map: RadioMap, picture: Path) -> None:
+    from rssnav.map_picture import save_map_picture
+
+    save_map_picture(plan, radio_map, picture)
+
+
+def _facts(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[str, Any]:
+    lit = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
+    return {
+        "file": str(output),
+        "picture": None if picture is None else str(picture),
+        "shape": radio_map.grid.shape,
+        "cell_size_m": radio_map.grid.cell_size_m,
+        "height_m": radio_map.grid.height_m,
+        "cells": radio_map.rss_dbm.size,
+        "cells_without_path": radio_map.rss_dbm.size - lit.size,
+        "rss_dbm_min": float(lit.min()) if lit.size else None,
+        "rss_dbm_max": float(lit.max()) if lit.size else None,
+        "paths": int(radio_map.path_count.sum()),
+        "tracing_s": radio_map.provenance["wall_time_s"],
+        "plan_sha256": radio_map.plan_sha256,
+    }
+
+
+def _print_facts(facts: dict[str, Any]) -> None:
+    n_y, n_x = facts["shape"]
+    rss = "no cell has a path"
+    if facts["rss_dbm_min"] is not None:
+        rss = f"{facts['rss_dbm_min']:.2f} to {facts['rss_dbm_max']:.2f} dBm"
+    dark = facts["cells_without_path"]
+    pairs = [
+        ("map", facts["file"]),
+        ("cells", f"{n_x} x {n_y}, {dark} of them without a path"),
+        ("RSS", rss),
+        ("paths", f"{facts['paths']:,}".replace(",", " ")),
+        ("tracing", f"{facts['tracing_s']:.1f} s"),
+    ]
+    if facts["picture"] is not None:
+        pairs.append(("picture", facts["picture"]))
+    print_pairs(pairs)

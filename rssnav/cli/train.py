@@ -1,0 +1,374 @@
+"""``rssnav train``: train an agent on a radio map."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+import floorplans
+from raytrace import RadioMap
+from rssnav import (
+    Agent,
+    ExactStates,
+    Fluctuation,
+    GridWorld,
+    IntervalStates,
+    LocationAgent,
+    QLearning,
+    ResultFileError,
+    RssAgent,
+    ToleranceStates,
+    TrainingInterrupted,
+    TrainingResult,
+    shortest_path,
+    train,
+)
+from rssnav.cli.console import note, one_progress, print_json, print_pairs
+from rssnav.cli.kernel_cache import learning_cache
+from rssnav.cli.options import Json, Plan, Threads, examples
+from rssnav.maps import Progress, require_map_for
+from rssnav.states import StateRule
+
+EPISODES = 1000
+EPISODES_TO_CONVERGE = 20_000
+GOAL = "Goal"
+LEARNING = "Learning"
+STATES = "States of the RSS agent"
+
+
+class AgentName(StrEnum):
+    """The agents there are."""
+
+    RSS = "rss"
+    LOCATION = "location"
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the command ``train``."""
+    parent.command(
+        "train",
+        epilog=examples(
+            "rssnav map flat -o flat.h5",
+            "rssnav train flat --map flat.h5 --goal-rss -30 --runs 10",
+            "rssnav train flat --map flat.h5 --agent location -o location.h5",
+        ),
+    )(train_agent)
+
+
+def train_agent(
+    plan: Plan,
+    map_file: Annotated[
+        Path,
+        typer.Option("--map", metavar="FILE", help="The plan's radio map (rssnav map)."),
+    ],
+    agent: Annotated[AgentName, typer.Option(help="What it senses.")] = AgentName.RSS,
+    speed: Annotated[
+        int, typer.Option(metavar="V", min=1, help="Cells flown in a step along an axis.")
+    ] = 1,
+    runs: Annotated[int, typer.Option(metavar="N", min=1, help="Realisations.")] = 100,
+    episodes: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=1,
+            help="Episodes of each; with --until-converged the most it may take.",
+            show_default=f"{EPISODES}, or {EPISODES_TO_CONVERGE} with --until-converged",
+        ),
+    ] = None,
+    until_converged: Annotated[
+        bool,
+        typer.Option(
+            "--until-converged", help="Stop a run when it flies the same path three times in a row."
+        ),
+    ] = False,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Same seed, same result.")] = 0,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="Keep the result (HDF5). Runs that are there already are not trained again.",
+            show_default=False,
+        ),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Train from the beginning, and replace FILE.")
+    ] = False,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DB",
+            help="A reading this near to a known state is that state.",
+            show_default="every value is a state",
+            rich_help_panel=STATES,
+        ),
+    ] = None,
+    interval: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DB",
+            help="States are RSS intervals of this width.",
+            show_default="every value is a state",
+            rich_help_panel=STATES,
+        ),
+    ] = None,
+    fluctuation: Annotated[
+        float,
+        typer.Option(
+            metavar="DB",
+            help="Standard deviation of the readings; needs --tolerance or --interval.",
+            rich_help_panel=STATES,
+        ),
+    ] = 0.0,
+    goal_rss: Annotated[
+        float,
+        typer.Option(
+            metavar="DBM",
+            help="The RSS agent has found the source above this reading.",
+            rich_help_panel=GOAL,
+        ),
+    ] = RssAgent.terminal_dbm,
+    goal_distance: Annotated[
+        float,
+        typer.Option(
+            metavar="M",
+            help="The location agent has found it when nearer than this in metres.",
+            rich_help_panel=GOAL,
+        ),
+    ] = LocationAgent.terminal_distance_m,
+    gamma: Annotated[
+        float, typer.Option(metavar="G", help="Discount factor.", rich_help_panel=LEARNING)
+    ] = QLearning.gamma,
+    eta: Annotated[
+        float,
+        typer.Option(
+            metavar="E", help="Decay of epsilon and alpha a step.", rich_help_panel=LEARNING
+        ),
+    ] = QLearning.eta,
+    initial_q: Annotated[
+        float,
+        typer.Option(metavar="Q", help="Q before learning.", rich_help_panel=LEARNING),
+    ] = QLearning.initial_q,
+    max_steps: Annotated[
+        int,
+        typer.Option(
+            metavar="N", help="Steps after which an episode is cut.", rich_help_panel=LEARNING
+        ),
+    ] = QLearning.max_steps,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """Train an agent to fly from a plan's start to its source, many times over.
+
+    Ctrl-C keeps the finished runs in FILE; the same command then goes on from there.
+    """
+    loaded = floorplans.load(plan)
+    radio_map = RadioMap.load(map_file)
+    require_map_for(loaded, radio_map, map_file)
+    world = GridWorld.from_map(loaded, radio_map, speed)
+    senses = _Senses(agent, tolerance, interval, fluctuation, goal_rss, goal_distance)
+    learning = _learning(gamma=gamma, eta=eta, initial_q=initial_q, max_steps=max_steps)
+    job = _Job(
+        world,
+        senses.agent_in(world),
+        {
+            "runs": runs,
+            "episodes": episodes or (EPISODES_TO_CONVERGE if until_converged else EPISODES),
+            "seed": seed,
+            "learning": learning,
+            "until_converged": until_converged,
+        },
+        output,
+    )
+    result = job.run(None if force else job.earlier(), threads)
+    facts = _facts(result)
+    if as_json:
+        print_json({"plan": plan, "map": str(map_file), **facts})
+    else:
+        _print(facts, output)
+
+
+def _learning(**parameters: Any) -> QLearning:
+    try:
+        return QLearning(**parameters)
+    except ValueError as error:
+        raise typer.BadParameter(f"{error}.") from error
+
+
+@dataclass(frozen=True)
+class _Senses:
+    """What the options say of the agent."""
+
+    agent: AgentName
+    tolerance: float | None
+    interval: float | None
+    fluctuation: float
+    goal_rss: float
+    goal_distance: float
+
+    def agent_in(self, world: GridWorld) -> Agent:
+        """Make the agent; options that contradict each other are wrong usage."""
+        if self.tolerance is not None and self.interval is not None:
+            raise typer.BadParameter("give --tolerance or --interval, not both.")
+        try:
+            if self.agent is AgentName.LOCATION:
+                self._refuse_rss_options()
+                return LocationAgent(self.goal_distance)
+            states = _states(world.rss_dbm, self.tolerance, self.interval)
+            return RssAgent(states, self.goal_rss, Fluctuation(self.fluctuation))
+        except ValueError as error:
+            raise typer.BadParameter(f"{error}.") from error
+
+    def _refuse_rss_options(self) -> None:
+        if self.tolerance is not None or self.interval is not None or self.fluctuation != 0.0:
+            raise typer.BadParameter(
+                "--tolerance, --interval and --fluctuation are the RSS agent's; leave them out, or "
+                "use --agent rss."
+            )
+
+
+def _states(
+    rss_dbm: NDArray[np.float64], tolerance: float | None, interval: float | None
+) -> StateRule:
+    if tolerance is not None:
+        return ToleranceStates(tolerance)
+    if interval is not None:
+        lit = rss_dbm[np.isfinite(rss_dbm)]
+        low, high = float(np.floor(lit.min())), float(np.ceil(lit.max()))
+        return IntervalStates.uniform(low, high, interval)
+    return ExactStates()
+
+
+class _Job:
+    """A training, and the file that keeps its runs."""
+
+    def __init__(
+        self, world: GridWorld, agent: Agent, schedule: dict[str, Any], output: Path | None
+    ) -> None:
+        self._world = world
+        self._agent = agent
+        self._schedule = schedule
+        self._output = output
+
+    def earlier(self) -> TrainingResult | None:
+        """Return the runs of this training that its file holds; refuse any other file."""
+        if self._output is None or not self._output.exists():
+            return None
+        try:
+            found = TrainingResult.load(self._output)
+        except ResultFileError as error:
+            raise ResultFileError(f"{error}; --force replaces it") from error
+        note(f"{self._output} holds {found.run_ids.size} of {found.schedule.runs} runs")
+        return found
+
+    def run(self, earlier: TrainingResult | None, threads: int | None) -> TrainingResult:
+        """Train what is missing, and keep it; on Ctrl-C, keep what there is."""
+        stage = f"{self._agent.name} agent, speed {self._world.speed}"
+        try:
+            with one_progress(stage, compiles=not learning_cache().n_compiled) as progress:
+                result = self._train(earlier, threads, progress)
+        except TrainingInterrupted as interrupt:
+            raise KeyboardInterrupt(self._keep(interrupt.result)) from interrupt
+        if self._output is not None and result is not earlier:
+            result.save(self._output)
+        return result
+
+    def _train(
+        self, earlier: TrainingResult | None, threads: int | None, progress: Progress
+    ) -> TrainingResult:
+        try:
+            return train(
+                self._world,
+                self._agent,
+                threads=threads,
+                progress=progress,
+                resume=earlier,
+                **self._schedule,
+            )
+        except ValueError as error:
+            if earlier is None:
+                raise
+            raise ResultFileError(f"{self._output}: {error}; --force replaces it") from error
+
+    def _keep(self, finished: TrainingResult | None) -> str:
+        """Save finished runs; say what was kept."""
+        runs = self._schedule["runs"]
+        if finished is None:
+            return f"interrupted before the first of {runs} runs was finished; nothing to keep"
+        done = f"interrupted; {finished.run_ids.size} of {runs} runs are finished"
+        if self._output is None:
+            return f"{done} and lost, as no -o FILE was given to keep them"
+        finished.save(self._output)
+        return f"{done} and kept in {self._output}; the same command goes on from there"
+
+
+def _facts(result: TrainingResult) -> dict[str, Any]:
+    """What a training amounts to; flights are the final greedy ones that reach the source."""
+    world, converged = result.world, result.converged_episode >= 0
+    terminal = result.agent.decision_process(world, result.learning).terminal
+    shortest = {cost: shortest_path(world, terminal, cost) for cost in ("steps", "metres")}
+    return {
+        "agent": result.agent.name,
+        "speed": world.speed,
+        "states": world.n_states,
+        "seed": result.schedule.seed,
+        "runs": result.run_ids.size,
+        "episodes": _spread(result.episodes_flown),
+        "truncated_episodes": int(result.truncated.sum()),
+        "labels": _spread(result.n_labels),
+        "converged_runs": int(converged.sum()),
+        "converged_episode": _spread(result.converged_episode[converged]),
+        "converged_flight_s": _spread(result.converged_steps[converged]),
+        "converged_cpu_s": _spread(result.converged_cpu_s[converged]),
+        "reached_runs": int(result.reached.sum()),
+        "path_steps": _spread(result.path_steps[result.reached]),
+        "path_length_m": _spread(result.path_length_m[result.reached]),
+        "fewest_steps": shortest["steps"].steps,
+        "shortest_length_m": shortest["metres"].length_m,
+        "cpu_s": float(result.cpu_s.sum()),
+    }
+
+
+def _spread(values: NDArray[Any]) -> dict[str, float] | None:
+    """Mean, least and greatest of values (n,); None for none."""
+    if values.size == 0:
+        return None
+    return {"mean": float(values.mean()), "min": float(values.min()), "max": float(values.max())}
+
+
+def _print(facts: dict[str, Any], output: Path | None) -> None:
+    runs = facts["runs"]
+    print_pairs(
+        [
+            ("agent", f"{facts['agent']}, speed {facts['speed']}, {facts['states']} cells"),
+            ("runs", f"{runs} of {_text(facts['episodes'])} episodes, seed {facts['seed']}"),
+            ("converged", f"{facts['converged_runs']} of {runs}"),
+            ("  after", f"{_text(facts['converged_episode'])} episodes"),
+            ("  flown", f"{_text(facts['converged_flight_s'])} s"),
+            ("  CPU time", f"{_text(facts['converged_cpu_s'], 2)} s a run"),
+            ("final flight", f"{facts['reached_runs']} of {runs} reach the source"),
+            ("  steps", f"{_text(facts['path_steps'])}, fewest possible {facts['fewest_steps']}"),
+            (
+                "  length",
+                f"{_text(facts['path_length_m'], 2)} m, "
+                f"shortest possible {facts['shortest_length_m']:.2f} m",
+            ),
+            ("cut episodes", facts["truncated_episodes"]),
+            ("states", _text(facts["labels"])),
+            ("CPU time", f"{facts['cpu_s']:.1f} s"),
+        ]
+    )
+    if output is not None:
+        print(f"kept in {output}")
+
+
+def _text(spread: dict[str, float] | None, digits: int = 0) -> str:
+    if spread is None:
+        return "-"
+    low, mean, high = (f"{spread[key]:.{digits}f}" for key in ("min", "mean", "max"))
+    return mean if low == high else f"{mean} ({low} to {high})"
