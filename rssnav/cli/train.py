@@ -343,26 +343,30 @@ def _spread(values: NDArray[Any]) -> dict[str, float] | None:
 
 def _print(facts: dict[str, Any], output: Path | None) -> None:
     runs = facts["runs"]
-    print_pairs(
-        [
-            ("agent", f"{facts['agent']}, speed {facts['speed']}, {facts['states']} cells"),
-            ("runs", f"{runs} of {_text(facts['episodes'])} episodes, seed {facts['seed']}"),
-            ("converged", f"{facts['converged_runs']} of {runs}"),
+    pairs = [
+        ("agent", f"{facts['agent']}, speed {facts['speed']}, {facts['states']} cells"),
+        ("runs", f"{runs} of {_text(facts['episodes'])} episodes, seed {facts['seed']}"),
+        ("states", _text(facts["labels"])),
+        ("cut episodes", facts["truncated_episodes"]),
+        ("CPU time", f"{facts['cpu_s']:.1f} s"),
+        ("converged", f"{facts['converged_runs']} of {runs}"),
+    ]
+    if facts["converged_runs"]:
+        pairs += [
             ("  after", f"{_text(facts['converged_episode'])} episodes"),
             ("  flown", f"{_text(facts['converged_flight_s'])} s"),
             ("  CPU time", f"{_text(facts['converged_cpu_s'], 2)} s a run"),
-            ("final flight", f"{facts['reached_runs']} of {runs} reach the source"),
-            ("  steps", f"{_text(facts['path_steps'])}, fewest possible {facts['fewest_steps']}"),
-            (
-                "  length",
-                f"{_text(facts['path_length_m'], 2)} m, "
-                f"shortest possible {facts['shortest_length_m']:.2f} m",
-            ),
-            ("cut episodes", facts["truncated_episodes"]),
-            ("states", _text(facts["labels"])),
-            ("CPU time", f"{facts['cpu_s']:.1f} s"),
         ]
-    )
+    pairs += [
+        ("final flight", f"{facts['reached_runs']} of {runs} reach the source"),
+        ("  steps", f"{_text(facts['path_steps'])}; fewest possible {facts['fewest_steps']}"),
+        (
+            "  length",
+            f"{_text(facts['path_length_m'], 2)} m; "
+            f"shortest possible {facts['shortest_length_m']:.2f} m",
+        ),
+    ]
+    print_pairs(pairs)
     if output is not None:
         print(f"kept in {output}")
 

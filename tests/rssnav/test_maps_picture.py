@@ -1,0 +1,104 @@
+"""The picture of a map shows every reading in its place, and no reading where there is no path."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cli_plans import ROOM
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+
+import floorplans
+from raytrace import TraceConfig
+from rssnav.map_picture import draw_radio_map, save_map_picture
+from rssnav.maps import make_map
+
+DARK = (2, 4)
+
+
+@pytest.fixture(scope="module")
+def plan():
+    return floorplans.loads(ROOM)
+
+
+@pytest.fixture(scope="module")
+def whole(plan):
+    """A map in which every cell has a reading."""
+    radio_map = make_map(plan, config=TraceConfig(1, 0))
+    ramp = np.linspace(-60.0, -20.0, radio_map.rss_dbm.size).reshape(radio_map.rss_dbm.shape)
+    return replace(radio_map, rss_dbm=ramp)
+
+
+@pytest.fixture(scope="module")
+def with_a_dark_cell(whole):
+    rss_dbm = whole.rss_dbm.copy()
+    rss_dbm[DARK] = -np.inf
+    return replace(whole, rss_dbm=rss_dbm)
+
+
+def by_gid(ax) -> dict[str, object]:
+    return {artist.get_gid(): artist for artist in ax.get_children() if artist.get_gid()}
+
+
+def test_readings_lie_on_their_cells(plan, whole) -> None:
+    ax = Figure().add_subplot()
+    image = draw_radio_map(plan, whole, ax)
+    assert image.get_extent() == [0.0, 6.0, 0.0, 4.0]
+    assert image.origin == "lower"
+    assert np.array_equal(image.get_array(), whole.rss_dbm)
+    assert image.get_clim() == (-60.0, -20.0)
+    assert "no path" not in by_gid(ax)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x [m]", "y [m]")
+    assert ax.get_aspect() == 1.0
+
+
+def test_cell_without_a_path_is_hatched_and_has_no_colour(plan, with_a_dark_cell) -> None:
+    ax = Figure().add_subplot()
+    image = draw_radio_map(plan, with_a_dark_cell, ax)
+    assert np.argwhere(np.ma.getmaskarray(image.get_array())).tolist() == [list(DARK)]
+    assert np.isfinite(image.get_clim()).all()
+    hatched = by_gid(ax)["no path"]
+    assert isinstance(hatched, PolyCollection)
+    assert hatched.get_hatch()
+    (cell,) = hatched.get_paths()
+    assert cell.get_extents().bounds == (4.0, 2.0, 1.0, 1.0)
+
+
+def test_source_start_and_walls_are_where_the_plan_has_them(plan, whole) -> None:
+    ax = Figure().add_subplot()
+    draw_radio_map(plan, whole, ax)
+    marks = by_gid(ax)
+    assert marks["source"].get_xydata().tolist() == [list(plan.source[:2])]
+    assert marks["start"].get_xydata().tolist() == [list(plan.start)]
+    solid = marks["solid walls"]
+    assert isinstance(solid, LineCollection)
+    assert np.array_equal(np.array(solid.get_segments()), plan.solid_segments(2.0))
+
+
+def test_range_of_colours_can_be_shared_between_maps(plan, whole) -> None:
+    image = draw_radio_map(plan, whole, Figure().add_subplot(), rss_range_dbm=(-90.0, -10.0))
+    assert image.get_clim() == (-90.0, -10.0)
+
+
+def test_map_without_any_path_can_be_drawn(plan, whole) -> None:
+    dark = replace(whole, rss_dbm=np.full(whole.rss_dbm.shape, -np.inf))
+    ax = Figure().add_subplot()
+    draw_radio_map(plan, dark, ax)
+    assert len(by_gid(ax)["no path"].get_paths()) == dark.rss_dbm.size
+
+
+def test_saved_picture_names_units_and_explains_the_hatching(
+    plan, whole, with_a_dark_cell, tmp_path
+) -> None:
+    import matplotlib as mpl
+
+    with mpl.rc_context({"svg.fonttype": "none"}):
+        save_map_picture(plan, with_a_dark_cell, tmp_path / "dark.svg")
+        save_map_picture(plan, whole, tmp_path / "whole.svg")
+    text = (tmp_path / "dark.svg").read_text()
+    for words in ("RSS [dBm]", "x [m]", "room: 25 dBm at 2.4 GHz", "wall at 2 m", "no path"):
+        assert words in text
+    assert ">no path<" not in (tmp_path / "whole.svg").read_text()
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["dark.svg", "whole.svg"]
