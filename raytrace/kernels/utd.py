@@ -36,6 +36,8 @@ class Wedge(NamedTuple):
         Of pi / 2n.
     cos_whole, sin_whole
         Of n pi.
+    is_sheet
+        Whether it is the end of one sheet: a half plane with the same slab on both faces.
     """
 
     n: float
@@ -45,16 +47,27 @@ class Wedge(NamedTuple):
     sin_part: float
     cos_whole: float
     sin_whole: float
+    is_sheet: bool
 
 
 class WedgeTerms(NamedTuple):
-    """The four terms of a pair of directions: cotangents / and |cos| of the transition angles.
+    """What a pair of directions makes of a wedge.
 
-    Terms 0 and 1 belong to phi - phi', 2 (n-face) and 3 (o-face) to phi + phi'.
+    Attributes
+    ----------
+    cotangent, detour
+        Of the four terms: their cotangents and the |cos| of their transition angles. Terms 0 and 1
+        belong to phi - phi', 2 (n-face) and 3 (o-face) to phi + phi'.
+    cos_minus, cos_plus
+        Of (phi - phi') / 2 and (phi + phi') / 2, all that a sheet needs.
+    o_cosine, n_cosine
+        Cosine of incidence on either face, over sin beta.
     """
 
     cotangent: tuple[float, float, float, float]
     detour: tuple[float, float, float, float]
+    cos_minus: float
+    cos_plus: float
     o_cosine: float
     n_cosine: float
 
@@ -63,24 +76,30 @@ class WedgeTerms(NamedTuple):
 def new_wedge(n: float, o_slab: int, n_slab: int) -> Wedge:
     """Wedge of a free angle n pi."""
     part, whole = 0.5 * math.pi / n, n * math.pi
+    is_sheet = abs(n - 2.0) < 1e-12 and o_slab == n_slab
     return Wedge(
-        n, o_slab, n_slab, math.cos(part), math.sin(part), math.cos(whole), math.sin(whole)
+        n,
+        o_slab,
+        n_slab,
+        math.cos(part),
+        math.sin(part),
+        math.cos(whole),
+        math.sin(whole),
+        is_sheet,
     )
 
 
 @jit(inline="always", fast=True)
-def transition(table: Floats, s: float) -> complex:
-    """F(s^2)."""
+def transition_ratio(table: Floats, s: float) -> complex:
+    """F(s^2) / s."""
     if s >= TRANSITION_MAX:
         x = s * s
-        return complex(1.0 - 0.75 / (x * x), 0.5 / x)
+        return complex((1.0 - 0.75 / (x * x)) / s, 0.5 / (x * s))
     t = s * (TRANSITION_STEPS / TRANSITION_MAX)
     k = int(t)
     w = t - k
     v = 1.0 - w
-    return complex(
-        (table[k, 0] * v + table[k + 1, 0] * w) * s, (table[k, 1] * v + table[k + 1, 1] * w) * s
-    )
+    return complex(table[k, 0] * v + table[k + 1, 0] * w, table[k, 1] * v + table[k + 1, 1] * w)
 
 
 @jit(inline="always", fast=True)
@@ -117,20 +136,13 @@ def wedge_terms(
     at, source
         (6,) their `wedge_angles`.
     """
-    sp, cp = wedge.sin_part, wedge.cos_part
-    ch, sh = at[COSINE_WEDGE], at[SINE_WEDGE]
-    gh, fh = source[COSINE_WEDGE], source[SINE_WEDGE]
-    cos_minus, sin_minus = ch * gh + sh * fh, sh * gh - ch * fh
-    cos_plus, sin_plus = ch * gh - sh * fh, sh * gh + ch * fh
-    cotangents = (
-        cotangent(sp * cos_minus + cp * sin_minus, cp * cos_minus - sp * sin_minus),
-        cotangent(sp * cos_minus - cp * sin_minus, cp * cos_minus + sp * sin_minus),
-        cotangent(sp * cos_plus + cp * sin_plus, cp * cos_plus - sp * sin_plus),
-        cotangent(sp * cos_plus - cp * sin_plus, cp * cos_plus + sp * sin_plus),
-    )
     ch, sh, gh, fh = at[COSINE_HALF], at[SINE_HALF], source[COSINE_HALF], source[SINE_HALF]
     cos_minus, sin_minus = ch * gh + sh * fh, sh * gh - ch * fh
     cos_plus, sin_plus = ch * gh - sh * fh, sh * gh + ch * fh
+    o_cosine, n_cosine = at[ROOT_O] * source[ROOT_O], at[ROOT_N] * source[ROOT_N]
+    if wedge.is_sheet:
+        none = (0.0, 0.0, 0.0, 0.0)
+        return WedgeTerms(none, none, cos_minus, cos_plus, o_cosine, n_cosine)
     minus, plus = phi - phi_source, phi + phi_source
     detours = (
         detour(wedge, minus, cos_minus, sin_minus, 1.0),
@@ -138,7 +150,17 @@ def wedge_terms(
         detour(wedge, plus, cos_plus, sin_plus, 1.0),
         detour(wedge, plus, cos_plus, sin_plus, -1.0),
     )
-    return WedgeTerms(cotangents, detours, at[ROOT_O] * source[ROOT_O], at[ROOT_N] * source[ROOT_N])
+    sp, cp = wedge.sin_part, wedge.cos_part
+    ch, sh, gh, fh = at[COSINE_WEDGE], at[SINE_WEDGE], source[COSINE_WEDGE], source[SINE_WEDGE]
+    cos_n_minus, sin_n_minus = ch * gh + sh * fh, sh * gh - ch * fh
+    cos_n_plus, sin_n_plus = ch * gh - sh * fh, sh * gh + ch * fh
+    cotangents = (
+        cotangent(sp * cos_n_minus + cp * sin_n_minus, cp * cos_n_minus - sp * sin_n_minus),
+        cotangent(sp * cos_n_minus - cp * sin_n_minus, cp * cos_n_minus + sp * sin_n_minus),
+        cotangent(sp * cos_n_plus + cp * sin_n_plus, cp * cos_n_plus - sp * sin_n_plus),
+        cotangent(sp * cos_n_plus - cp * sin_n_plus, cp * cos_n_plus + sp * sin_n_plus),
+    )
+    return WedgeTerms(cotangents, detours, cos_minus, cos_plus, o_cosine, n_cosine)
 
 
 @jit(inline="always", fast=True)
@@ -156,15 +178,32 @@ def diffraction(
     sin_beta
         Sine of the angle between ray and edge.
     """
-    cot, bend = terms.cotangent, terms.detour
-    incident = cot[0] * transition(radio.transition, spread * bend[0]) + cot[1] * transition(
-        radio.transition, spread * bend[1]
-    )
-    n_term = cot[2] * transition(radio.transition, spread * bend[2])
-    o_term = cot[3] * transition(radio.transition, spread * bend[3])
-    n_tm, n_te = both_reflections(radio.slabs, wedge.n_slab, min(terms.n_cosine * sin_beta, 1.0))
+    table = radio.transition
     o_tm, o_te = both_reflections(radio.slabs, wedge.o_slab, min(terms.o_cosine * sin_beta, 1.0))
-    return incident + n_te * n_term + o_te * o_term, incident + n_tm * n_term + o_tm * o_term
+    if wedge.is_sheet:
+        # cot((pi + b) / 4) + cot((pi - b) / 4) = 2 / cos(b / 2): two terms in one, not singular
+        incident = half_plane_term(table, spread, terms.cos_minus)
+        reflected = half_plane_term(table, spread, terms.cos_plus)
+        return incident + o_te * reflected, incident + o_tm * reflected
+    n_tm, n_te = both_reflections(radio.slabs, wedge.n_slab, min(terms.n_cosine * sin_beta, 1.0))
+    incident = wedge_term(table, spread, terms.cotangent[0], terms.detour[0])
+    incident += wedge_term(table, spread, terms.cotangent[1], terms.detour[1])
+    at_n = wedge_term(table, spread, terms.cotangent[2], terms.detour[2])
+    at_o = wedge_term(table, spread, terms.cotangent[3], terms.detour[3])
+    return incident + n_te * at_n + o_te * at_o, incident + n_tm * at_n + o_tm * at_o
+
+
+@jit(inline="always", fast=True)
+def wedge_term(table: Floats, spread: float, cot: float, bend: float) -> complex:
+    """Cot * F, one of the four terms (docs/theory.md, eq. 17)."""
+    s = spread * bend
+    return transition_ratio(table, s) * (cot * s)
+
+
+@jit(inline="always", fast=True)
+def half_plane_term(table: Floats, spread: float, cosine: float) -> complex:
+    """2 F / cosine, two of the four terms of a half plane."""
+    return transition_ratio(table, spread * abs(cosine)) * math.copysign(2.0 * spread, cosine)
 
 
 @jit(inline="always")
