@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from rssnav.cli import doctor, paths, plan, radio_maps, train
+from rssnav.cli import doctor, experiments, paths, plan, radio_maps, train
 from rssnav.cli.failures import Commands
 from rssnav.cli.options import examples
 
@@ -30,6 +30,7 @@ plan.add_to(app)
 radio_maps.add_to(app)
 paths.add_to(app)
 train.add_to(app)
+experiments.add_to(app)
 doctor.add_to(app)
 
 

@@ -134,7 +134,7 @@ def _bars(console: Console) -> Progress:
 
 
 class _Bars:
-    """A bar for each stage; one of unknown length until the first stage gets on."""
+    """A bar for each stage, of unknown length until the stage gets on."""
 
     def __init__(self, progress: Progress, first: str) -> None:
         self._progress = progress
@@ -142,12 +142,12 @@ class _Bars:
         self._tasks: dict[str, TaskID] = {}
 
     def __call__(self, stage: str, done: int, total: int) -> None:
-        if self._waiting is not None:
+        if self._waiting is not None and done > 0:
             self._progress.remove_task(self._waiting)
             self._waiting = None
         if stage not in self._tasks:
-            self._tasks[stage] = self._progress.add_task(stage, total=total)
-        self._progress.update(self._tasks[stage], completed=done, total=total)
+            self._tasks[stage] = self._progress.add_task(stage, total=None)
+        self._progress.update(self._tasks[stage], completed=done, total=total if done > 0 else None)
 
 
 class _Lines:

@@ -1,0 +1,101 @@
+"""``rssnav experiments`` and ``rssnav report``: every figure and table of the paper."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rssnav.cli.console import note, print_table, stage_progress
+from rssnav.cli.kernel_cache import learning_cache, tracer_cache
+from rssnav.cli.options import Threads, examples
+
+if TYPE_CHECKING:
+    from rssnav.experiments import Paper
+
+Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Where everything is, or will be.")]
+RESULTS = Path("results")
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the commands ``experiments`` and ``report``."""
+    parent.command(
+        "experiments",
+        epilog=examples("rssnav experiments --quick", "rssnav experiments --out results"),
+    )(run_experiments)
+    parent.command("report", epilog=examples("rssnav report", "rssnav report --out results"))(
+        remake_report
+    )
+
+
+def run_experiments(
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Few realisations: the same figures in a minute.")
+    ] = False,
+    out: Out = RESULTS,
+    runs: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=1,
+            help="Realisations of each configuration.",
+            show_default="100, or 8 with --quick",
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Same seed, same result.")] = 0,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume/--no-resume", help="Take over trainings that are already there."),
+    ] = True,
+    threads: Threads = None,
+) -> None:
+    """Run the whole paper: maps, trainings, figures, tables, and a report to read.
+
+    What is already there and still current is taken over. After Ctrl-C the same command goes on.
+    """
+    from rssnav.experiments import run_paper
+
+    try:
+        with stage_progress(compiles=_must_compile()) as show:
+            paper = run_paper(
+                out,
+                quick=quick,
+                runs=runs,
+                seed=seed,
+                threads=threads,
+                resume=resume,
+                progress=show,
+                notice=note,
+            )
+    except KeyboardInterrupt as interrupt:
+        raise KeyboardInterrupt(
+            f"interrupted; finished maps and runs are kept in {out}, and the same command goes on "
+            "from there"
+        ) from interrupt
+    _print(paper)
+
+
+def remake_report(out: Out = RESULTS, threads: Threads = None) -> None:
+    """Make figures, tables and report again from the maps and trainings of an earlier run."""
+    from rssnav.experiments import report_again
+
+    with stage_progress(compiles=_must_compile()) as show:
+        paper = report_again(out, threads=threads, progress=show, notice=note)
+    _print(paper)
+
+
+def _must_compile() -> bool:
+    return not (tracer_cache().n_compiled and learning_cache().n_compiled)
+
+
+def _print(paper: Paper) -> None:
+    """Print how the paper's claims came out, and where the report is."""
+    print_table(
+        ("claim", "verdict"),
+        [(finding.claim.key, finding.verdict) for finding in paper.findings],
+    )
+    count = Counter(str(finding.verdict) for finding in paper.findings)
+    print(", ".join(f"{n} {verdict}" for verdict, n in count.most_common()))
+    print(f"report: {paper.report}")
