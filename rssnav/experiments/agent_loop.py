@@ -49,14 +49,14 @@ def _draw_action(ax: Axes) -> None:
 def _draw_sensed(ax: Axes, colour: str) -> None:
     """Draw the arrows from environment to agent on the left: inner state, outer reward."""
     middle = (_AGENT_FOOT + _ENVIRONMENT_FOOT + _BOX_HEIGHT) / 2
-    for k, (rise, _, _) in enumerate(_SENSED):
+    for k, (rise, name, meaning) in enumerate(_SENSED):
         x = 0.4 - 0.2 * k
         top = _AGENT_FOOT + _BOX_HEIGHT / 2 - rise
         foot = _ENVIRONMENT_FOOT + _BOX_HEIGHT / 2 + rise
         _arrow(ax, [(_LEFT, foot), (x, foot), (x, top), (_LEFT, top)], colour)
-    for row, (_, name, meaning) in enumerate(_SENSED):
-        ax.text(0.46, middle + 0.2 - 0.2 * row, f"{name} {meaning}", color=colour, va="center")
-    ax.text(0.46, middle - 0.2, "(+1000 at the source)", color=colour, va="center")
+        ax.text(x + 0.025, middle, name, color=colour, rotation=90, ha="left", va="center")
+        ax.text(0.64, middle + 0.2 - 0.2 * k, meaning, color=colour, va="center")
+    ax.text(0.64, middle - 0.2, "(+1000 at the source)", color=colour, va="center")
 
 
 def _box(ax: Axes, foot: float, colour: str, name: str, inside: str) -> None:
@@ -89,4 +89,8 @@ def _arrow(ax: Axes, corners: list[Point], colour: str) -> None:
 
 def caption(_data: PaperData) -> str:
     """Say what the figure shows."""
-    return ""
+    return (
+        "The RSS-based agent senses only the RSS: its value names the state, its change since the "
+        "last position is the reward, and -21 dBm or more means that the source is found. The "
+        "location-based agent has (x, y) as its state and 1/D as its reward instead."
+    )

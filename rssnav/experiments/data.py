@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.agents import Agent, LocationAgent, RssAgent
+from rssnav.experiments.first_episodes import FirstEpisodes
 from rssnav.planning import Path, shortest_path
 from rssnav.results import TrainingResult
 from rssnav.world import GridWorld
@@ -31,6 +32,9 @@ SPEEDS = (1, 2, 4)
 
 SHOWN_EPISODES = 1000
 """Episodes that the paper's learning figures show."""
+
+VISIT_EPISODES = (200, 500, SHOWN_EPISODES)
+"""Episodes after which the paper shows the visits of each cell."""
 
 
 @dataclass(frozen=True, order=True)
@@ -80,14 +84,14 @@ class PaperData:
         Plans and maps, by the scenario's number.
     results : mapping of Configuration to TrainingResult
         Trainings.
-    early_visits : mapping of Configuration to (R, S) int64
-        Visits of each state in each realisation's first episodes, for the trainings whose visits
-        are compared; see :mod:`rssnav.experiments.early_visits`.
+    first_episodes : mapping of Configuration to FirstEpisodes
+        Visits and policies of each realisation in its first episodes, for the trainings whose
+        visits the paper shows.
     """
 
     scenarios: Mapping[int, Scenario]
     results: Mapping[Configuration, TrainingResult]
-    early_visits: Mapping[Configuration, NDArray[np.int64]]
+    first_episodes: Mapping[Configuration, FirstEpisodes]
 
     def result(self, scenario: int, agent: AgentName, speed: int) -> TrainingResult:
         """Return the training of a configuration."""

@@ -66,9 +66,7 @@ def _draw_keys(figure: Figure, ax: Axes, image: AxesImage, data: PaperData) -> N
     width_in, height_in = figure.get_size_inches()
     position = ax.get_position()
     top_in = height_in * (1.0 - position.y0) + _BELOW_MAP_IN
-    bar_axes = _axes(
-        figure, width_in * position.x0, top_in, width_in * position.width, _BAR_IN
-    )
+    bar_axes = _axes(figure, width_in * position.x0, top_in, width_in * position.width, _BAR_IN)
     bar = figure.colorbar(image, cax=bar_axes, orientation="horizontal", extend="min")
     bar.set_label("RSS [dBm]")
     plan = next(iter(data.scenarios.values())).plan

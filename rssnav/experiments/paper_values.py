@@ -14,9 +14,6 @@ RUNS = 100
 EPISODE_LIMIT = 20_000
 """Episodes a run may take to converge; not stated in the paper."""
 
-VISIT_EPISODES = (200, 500, 1000)
-"""Episodes after which it shows the visits of each cell."""
-
 _AGENT_ORDER: tuple[AgentName, ...] = ("rss", "location")
 _LENGTHS_M = {  # speed: Scenario 1 RSS, location; Scenario 2 RSS, location
     1: (105.88, 94.70, 122.61, 119.71),

@@ -57,4 +57,9 @@ def shown_steps(data: PaperData, agent: AgentName, speed: int) -> NDArray[np.int
 
 def caption(data: PaperData) -> str:
     """Say what the figure shows."""
-    return ""
+    low, high = (f"{100 * share:g}" for share in BAND)
+    return (
+        f"Steps of each episode in Scenario {SCENARIO}: mean over {data.n_runs} realisations, not "
+        f"smoothed, and the band from the {low} % to the {high} % quantile. The paper shows the "
+        "means alone."
+    )

@@ -1,0 +1,96 @@
+"""The first episodes of each realisation alone: its visits, and the policy it has learned.
+
+A training keeps visit counts summed over its realisations, and its final flights are those at
+convergence. Each realisation can be repeated alone, step for step, so its first episodes are
+flown once more: that gives visits per realisation, for intervals over realisations, and the
+greedy flight as it is after the episodes that the paper shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.results import TrainingResult
+from rssnav.training import train
+
+
+@dataclass(frozen=True, eq=False)
+class FirstEpisodes:
+    """What the realisations (R of them) of a training did in their first episodes.
+
+    Attributes
+    ----------
+    early : int
+        Episodes that the visits are counted over.
+    visits : (R, S) int64
+        Visits of each state in these.
+    episodes : int
+        Episodes after which the policy is looked at.
+    reached : (R,) bool
+        Whether the greedy flight then reaches the source.
+    path_steps : (R,) int64
+        Steps of that flight.
+    """
+
+    early: int
+    visits: NDArray[np.int64]
+    episodes: int
+    reached: NDArray[np.bool_]
+    path_steps: NDArray[np.int64]
+
+
+def first_episodes(
+    result: TrainingResult,
+    early: int,
+    episodes: int,
+    *,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> FirstEpisodes:
+    """Repeat the first episodes of each realisation of a training.
+
+    Parameters
+    ----------
+    result : TrainingResult
+        The training whose realisations are repeated.
+    early : int
+        Episodes to count visits over.
+    episodes : int
+        Episodes to fly, at least as many.
+    threads : int, optional
+        Threads that realisations are spread over.
+    progress : callable, optional
+        Called as ``progress(done, runs)``.
+    """
+
+    def repeat(run_id: int) -> TrainingResult:
+        return train(
+            result.world,
+            result.agent,
+            runs=result.schedule.runs,
+            episodes=episodes,
+            seed=result.schedule.seed,
+            learning=result.learning,
+            snapshot_episodes=(early,),
+            only_runs=[run_id],
+            threads=1,
+        )
+
+    alone: list[TrainingResult] = []
+    with ThreadPoolExecutor(threads) as pool:
+        for each in pool.map(repeat, result.run_ids.tolist()):
+            alone.append(each)
+            if progress is not None:
+                progress(len(alone), result.run_ids.size)
+    return FirstEpisodes(
+        early,
+        np.concatenate([each.visit_counts for each in alone]),
+        episodes,
+        np.concatenate([each.reached for each in alone]),
+        np.concatenate([each.path_steps for each in alone]),
+    )

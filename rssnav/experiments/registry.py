@@ -1,0 +1,86 @@
+"""All figures and tables, in the paper's order. To add one, write a module and list it here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from rssnav.experiments import (
+    agent_loop,
+    convergence_table,
+    convergence_time,
+    floor_plans,
+    heat_maps,
+    path_lengths,
+    steps_per_episode,
+    trajectories,
+    visits,
+)
+from rssnav.experiments.data import PaperData
+from rssnav.experiments.tables import Table
+
+
+@dataclass(frozen=True)
+class PaperFigure:
+    """A figure of the paper.
+
+    Attributes
+    ----------
+    key : str
+        Name for files.
+    title : str
+        What it is.
+    of_paper : str
+        The paper's figure that it stands for.
+    draw : callable
+        From the data to the figure.
+    caption : callable
+        From the data to what one sees.
+    """
+
+    key: str
+    title: str
+    of_paper: str
+    draw: Callable[[PaperData], Figure]
+    caption: Callable[[PaperData], str]
+
+
+FIGURES: tuple[PaperFigure, ...] = (
+    PaperFigure(
+        "agent_loop", "Agent and environment", "Fig. 2", agent_loop.draw, agent_loop.caption
+    ),
+    PaperFigure("floor_plans", "Floor plans", "Fig. 3", floor_plans.draw, floor_plans.caption),
+    PaperFigure(
+        "heat_maps",
+        "Received signal strength",
+        "background of Fig. 4",
+        heat_maps.draw,
+        heat_maps.caption,
+    ),
+    PaperFigure(
+        "trajectories",
+        "Final trajectories at 1 m/s",
+        "Fig. 4",
+        trajectories.draw,
+        trajectories.caption,
+    ),
+    PaperFigure("visits", "Visits of each cell", "Fig. 5", visits.draw, visits.caption),
+    PaperFigure(
+        "steps_per_episode",
+        "Steps per episode",
+        "Fig. 6",
+        steps_per_episode.draw,
+        steps_per_episode.caption,
+    ),
+    PaperFigure(
+        "convergence_time",
+        "Convergence time against speed",
+        "Fig. 7",
+        convergence_time.draw,
+        convergence_time.caption,
+    ),
+)
+
+TABLES: tuple[Callable[[PaperData], Table], ...] = (path_lengths.table, convergence_table.table)

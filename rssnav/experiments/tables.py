@@ -1,0 +1,80 @@
+"""Tables: values with full precision for CSV files, rounded ones for people."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+from rssnav.files import whole_file
+
+Cell = str | int | float | None
+"""A value of a table; None where there is none."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Attributes
+    ----------
+    name : str
+        Name in the CSV file, with its unit.
+    heading : str
+        Name for people, with its unit.
+    digits : int
+        Digits after the decimal point that people see.
+    """
+
+    name: str
+    heading: str
+    digits: int = 0
+
+    def shown(self, cell: Cell) -> str:
+        """Return a value as people see it."""
+        if cell is None:
+            return "–"
+        return f"{cell:,.{self.digits}f}" if isinstance(cell, float) else str(cell)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table.
+
+    Attributes
+    ----------
+    key : str
+        Name for files.
+    title, caption : str
+        What it is, and what one sees in it.
+    columns : tuple of Column
+    rows : tuple of tuple of Cell
+        One value per column.
+    """
+
+    key: str
+    title: str
+    caption: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+    @property
+    def shown_rows(self) -> list[list[str]]:
+        """Rows as people see them."""
+        return [
+            [column.shown(cell) for column, cell in zip(self.columns, row, strict=True)]
+            for row in self.rows
+        ]
+
+    def records(self) -> list[dict[str, Cell]]:
+        """Return each row as a mapping from column names to values."""
+        names = [column.name for column in self.columns]
+        return [dict(zip(names, row, strict=True)) for row in self.rows]
+
+    def save_csv(self, folder: Path) -> None:
+        """Write ``key``.csv with full precision; a value that is not there is an empty field."""
+        with whole_file(folder / f"{self.key}.csv") as beside:
+            with beside.open("w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file)
+                writer.writerow(column.name for column in self.columns)
+                writer.writerows(self.rows)
