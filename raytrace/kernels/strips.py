@@ -147,6 +147,29 @@ def mirror_frame(frame: Floats, line: Floats) -> None:
     frame[6] = -frame[6]
 
 
+@jit(allocates=False)
+def write_box(rays: Floats, length: float) -> None:
+    """All rays that leave an edge of that length."""
+    rays[0, 0], rays[1, 0], rays[2, 0], rays[3, 0] = 0.0, length, length, 0.0
+    rays[0, 1] = rays[1, 1] = -STEEPEST
+    rays[2, 1] = rays[3, 1] = STEEPEST
+
+
+@jit(allocates=False)
+def follow(
+    view: PlanView, link: NDArray[np.int32], frame: Floats, i: int, n: int, e: int, way: int
+) -> None:
+    """Make beam n, a copy of beam i, the one that passes edge e (way 0) or is mirrored (1)."""
+    link[n, PARENT], link[n, EDGE], link[n, REFLECTED] = i, e, way
+    link[n, ORDER] += way
+    if view.profile[e] >= 0:
+        link[n, ITEMS] += 1
+    if way == 0:
+        link[n, CELL] = view.beyond[e]
+    else:
+        mirror_frame(frame[n], view.plane[e])
+
+
 @jit()
 def grow_strips(
     view: PlanView, bounces: Ints, root: int, root_cell: int, max_order: int
@@ -170,9 +193,7 @@ def grow_strips(
     link[0, PARENT], link[0, EDGE], link[0, CELL] = -1, root, root_cell
     frame[0] = edge_frame(view, root)
     length, _ = in_frame(frame[0], view.ends[root, 2], view.ends[root, 3])
-    rays[0, 0], rays[1, 0], rays[2, 0], rays[3, 0] = 0.0, length, length, 0.0
-    rays[0, 1] = rays[1, 1] = -STEEPEST
-    rays[2, 1] = rays[3, 1] = STEEPEST
+    write_box(rays, length)
     first[1, 0] = 4
     n = 1
     i = 0
@@ -196,15 +217,8 @@ def grow_strips(
                     rays = enlarged(rays)
                 copy_row(link, n, i)
                 copy_row(frame, n, i)
-                link[n, PARENT], link[n, EDGE], link[n, REFLECTED] = i, e, way
                 link[n, BOUNCES] = needed
-                link[n, ORDER] += way
-                if view.profile[e] >= 0:
-                    link[n, ITEMS] += 1
-                if way == 0:
-                    link[n, CELL] = view.beyond[e]
-                else:
-                    mirror_frame(frame[n], view.plane[e])
+                follow(view, link, frame, i, n, e, way)
                 copy_rays(out, 0, corners, rays, first[n, 0])
                 first[n + 1, 0] = first[n, 0] + corners
                 n += 1

@@ -30,6 +30,7 @@ from raytrace.kernels.utd import (
     SINE_HALF,
     SINE_WEDGE,
     Wedge,
+    WedgeTerms,
     common_factor,
     diffraction,
     wedge_terms,
@@ -141,6 +142,72 @@ def legs_to_edge(trace: Trace, tree: Tree, beams: NDArray[np.int32], edge: Edge)
     )
 
 
+class Pair(NamedTuple):
+    """A leg to the edge with a leg from it, and what does not depend on heights.
+
+    Attributes
+    ----------
+    leg_in, n_in, length_in
+        The leg to the edge, its items, its horizontal length [m].
+    leg_out, n_out, length_out
+        The leg from the edge.
+    terms
+        The two directions at the wedge.
+    """
+
+    leg_in: Leg
+    n_in: int
+    length_in: float
+    leg_out: Leg
+    n_out: int
+    length_out: float
+    terms: WedgeTerms
+
+
+@jit(inline="always")
+def pair_fits(trace: Trace, edge: Edge, pair: Pair, slope: float) -> bool:
+    """Whether the edge stands where the path meets it, and the walls fit the path's heights."""
+    height = trace.radio.height
+    z_root = trace.source[2]
+    z = z_root + slope * pair.length_in
+    z_edge = folded(z, height)
+    fits = edge.z_low < z_edge < edge.z_high
+    if fits and is_constrained(pair.leg_in, pair.n_in):
+        fits = heights_fit(trace.plan, pair.leg_in, pair.n_in, z_root, slope, height)
+    if fits and is_constrained(pair.leg_out, pair.n_out):
+        fits = heights_fit(trace.plan, pair.leg_out, pair.n_out, z, slope, height)
+    return fits
+
+
+@jit(inline="always", fast=True)
+def pair_gain(trace: Trace, edge: Edge, pair: Pair, slope: float, bounces: int) -> complex:
+    """Gain of a path, without the wedge's common factor (docs/theory.md, eqs. 16-20).
+
+    With every length its horizontal part over cos_el, and sin beta = cos_el, the spreading factor
+    1 / (sqrt(s s' (s + s')) sin beta) is sqrt(cos_el) over the root of the horizontal parts.
+    """
+    plan, radio = trace.plan, trace.radio
+    total = pair.length_in + pair.length_out
+    product = pair.length_in * pair.length_out
+    z_root = trace.source[2]
+    ray = new_ray(radio, slope, bounces)
+    root = math.sqrt(ray.cos_el)
+    field = (1.0 + 0j, 0j, 0)
+    upright, level, done = carried(
+        plan, radio, pair.leg_in, pair.n_in, pair.length_in, ray, z_root, field
+    )
+    spread = math.sqrt(4.0 * math.pi / radio.wavelength * product / total) * root
+    soft, hard = diffraction(radio, edge.wedge, pair.terms, spread, ray.cos_el)
+    z_edge = z_root + slope * pair.length_in
+    field = (upright * soft, level * hard, done)
+    upright, level, done = carried(
+        plan, radio, pair.leg_out, pair.n_out, pair.length_out, ray, z_edge, field
+    )
+    size = radio.wavelength / (4.0 * math.pi * math.sqrt(product * total))
+    size *= root * antenna_gain(radio, ray, done)
+    return upright * size * phasor(radio.cis, total / (ray.cos_el * radio.wavelength))
+
+
 @jit(fast=True, allocates=False)
 def sum_upright_edge(
     trace: Trace,
@@ -168,7 +235,6 @@ def sum_upright_edge(
         Added to.
     """
     leg, angles = work
-    z_source = trace.source[2]
     common = common_factor(edge.wedge.n, trace.radio.wavelength)
     for hit in range(len(hits)):
         r, i = hits[hit, 0], hits[hit, 1]
@@ -176,59 +242,22 @@ def sum_upright_edge(
         n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, target, leg)
         phi = from_face(math.atan2(uy, ux), edge.o_face)
         write_angles(phi, edge.wedge.n, angles)
-        free = not is_constrained(leg, n)
-        heights = trace.image_z[trace.level[r]]
         field, power = 0j, 0.0
         for p in range(len(legs_in.order)):
             order = tree.link[i, ORDER] + legs_in.order[p]
             if order > trace.max_order:
                 break
             leg_in = Leg(legs_in.items[p], legs_in.marks[p])
-            n_in, length_in = legs_in.n_items[p], legs_in.length[p]
-            free_in = not is_constrained(leg_in, n_in)
-            total = length_in + length
+            length_in = legs_in.length[p]
             terms = wedge_terms(edge.wedge, phi, angles, legs_in.phi[p], legs_in.angles[p])
-            size = trace.radio.wavelength / (4.0 * math.pi * math.sqrt(length_in * length * total))
-            spread = math.sqrt(4.0 * math.pi / trace.radio.wavelength * length_in * length / total)
+            pair = Pair(leg_in, legs_in.n_items[p], length_in, leg, n, length, terms)
             for k in range(2 * (trace.max_order - order) + 1):
-                slope = (heights[k] - z_source) / total
-                z = z_source + slope * length_in
-                z_edge = folded(z, trace.radio.height)
-                if z_edge <= edge.z_low or z_edge >= edge.z_high:
-                    continue
-                if not free_in and not heights_fit(
-                    trace.plan, leg_in, n_in, z_source, slope, trace.radio.height
-                ):
-                    continue
-                if not free and not heights_fit(trace.plan, leg, n, z, slope, trace.radio.height):
+                rise = trace.image_z[trace.level[r], k] - trace.source[2]
+                slope = rise / (length_in + length)
+                if not pair_fits(trace, edge, pair, slope):
                     continue
                 bounces = trace.image_bounces[k]
-                ray = new_ray(trace.radio, slope, bounces)
-                upright, level, done = carried(
-                    trace.plan,
-                    trace.radio,
-                    leg_in,
-                    n_in,
-                    length_in,
-                    ray,
-                    z_source,
-                    (1.0 + 0j, 0j, 0),
-                )
-                root = math.sqrt(ray.cos_el)
-                soft, hard = diffraction(trace.radio, edge.wedge, terms, spread * root, ray.cos_el)
-                upright, level, done = carried(
-                    trace.plan,
-                    trace.radio,
-                    leg,
-                    n,
-                    length,
-                    ray,
-                    z,
-                    (upright * soft, level * hard, done),
-                )
-                turns = total / (ray.cos_el * trace.radio.wavelength)
-                scale = size * root * antenna_gain(trace.radio, ray, done)
-                gain = upright * scale * phasor(trace.radio.cis, turns)
+                gain = pair_gain(trace, edge, pair, slope, bounces)
                 field += gain
                 power += gain.real * gain.real + gain.imag * gain.imag
                 sums.n_paths[r, order + bounces] += 1
