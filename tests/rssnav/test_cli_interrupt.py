@@ -1,0 +1,62 @@
+"""Ctrl-C, sent to a real process: nothing half-written, and a line on what was kept."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+
+import h5py
+from cli_plans import ROOM, done, room_file
+
+from rssnav import TrainingResult
+
+LONG_MAP = ("map", "scenario2", "--threads", "1")
+LONG_TRAINING = ("--agent", "location", "--runs", "100000", "--episodes", "200")
+TIMEOUT_S = 240.0
+
+
+def interrupted_once_under_way(*arguments: object) -> tuple[int, str]:
+    """Send SIGINT to ``rssnav`` after its first line of progress; return exit code and stderr."""
+    command = [sys.executable, "-m", "rssnav", *map(str, arguments)]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        lines: list[str] = []
+        while not any("%)" in line for line in lines):
+            lines.append(process.stderr.readline())
+            assert lines[-1], "".join(lines)
+        process.send_signal(signal.SIGINT)
+        _, rest = process.communicate(timeout=TIMEOUT_S)
+    return process.returncode, "".join(lines) + rest
+
+
+def test_interrupted_map_leaves_the_old_file_or_none(tmp_path) -> None:
+    old = tmp_path / "old.h5"
+    with h5py.File(old, "w") as file:
+        file["temperature"] = [1.0]
+    before = old.read_bytes()
+    code, errors = interrupted_once_under_way(*LONG_MAP, "-o", old, "--force")
+    assert code == 130
+    assert errors.endswith(
+        "rssnav: interrupted; files are written whole or not at all, so nothing is left half-done\n"
+    )
+    assert "Traceback" not in errors
+    assert old.read_bytes() == before
+    assert [file.name for file in tmp_path.iterdir()] == ["old.h5"]
+
+
+def test_interrupted_training_keeps_its_finished_runs(tmp_path) -> None:
+    plan, radio_map = room_file(tmp_path, ROOM), tmp_path / "room.h5"
+    result = tmp_path / "result.h5"
+    done("map", plan, "-o", radio_map, "--reflections", "1", "--diffractions", "0")
+    code, errors = interrupted_once_under_way(
+        "train", plan, "--map", radio_map, "-o", result, *LONG_TRAINING
+    )
+    assert code == 130
+    assert "Traceback" not in errors
+    kept = TrainingResult.load(result).run_ids.size
+    assert 0 < kept < 100_000
+    assert errors.splitlines()[-1] == (
+        f"rssnav: interrupted; {kept} of 100000 runs are finished and kept in {result}; the same "
+        "command goes on from there"
+    )
