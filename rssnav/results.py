@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from rssnav.agents import Agent, QLearning
 from rssnav.world import GridWorld
 
+NO_STEP_LIMIT = int(np.iinfo(np.int64).max)
+
 
 @dataclass(frozen=True)
 class Schedule:
@@ -32,6 +34,8 @@ class Schedule:
         Episodes that a run flies even when it converges earlier.
     snapshot_episodes : tuple of int
         Episodes after which visit counts are kept.
+    max_total_steps : int
+        Steps after which a run flies no further episodes.
     """
 
     runs: int
@@ -40,10 +44,11 @@ class Schedule:
     until_converged: bool
     min_episodes: int
     snapshot_episodes: tuple[int, ...]
+    max_total_steps: int = NO_STEP_LIMIT
 
     @property
     def guaranteed_episodes(self) -> int:
-        """Episodes that every run flies."""
+        """Episodes that every run flies when no step limit ends it."""
         return min(self.episodes, self.min_episodes) if self.until_converged else self.episodes
 
 

@@ -21,7 +21,7 @@ from rssnav.agents import Agent, QLearning
 from rssnav.kernels import common
 from rssnav.learners import LearningProblem
 from rssnav.planning import Path, greedy_path
-from rssnav.results import Schedule, TrainingResult, padded
+from rssnav.results import NO_STEP_LIMIT, Schedule, TrainingResult, padded
 from rssnav.world import GridWorld
 
 Progress = Callable[[int, int], None]
@@ -67,6 +67,7 @@ def train(
     until_converged: bool = False,
     min_episodes: int = 1000,
     snapshot_episodes: Sequence[int] = (200, 500, 1000),
+    max_total_steps: int = NO_STEP_LIMIT,
     keep_q: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
@@ -98,6 +99,9 @@ def train(
     snapshot_episodes : sequence of int
         Episodes after which visit counts are kept; those that not every run is sure to fly are
         left out.
+    max_total_steps : int
+        A run that has flown as many steps begins no more episodes, or at most 63 more: a budget
+        for parameters with which it might never converge. With it no visit counts are kept.
     keep_q : bool
         Keep the final Q-tables.
     threads : int, optional
@@ -123,7 +127,11 @@ def train(
         On Ctrl-C, with the finished realisations.
     """
     learning = QLearning() if learning is None else learning
-    schedule = _schedule(runs, episodes, seed, until_converged, min_episodes, snapshot_episodes)
+    if max_total_steps < NO_STEP_LIMIT:
+        snapshot_episodes = ()
+    schedule = _schedule(
+        runs, episodes, seed, until_converged, min_episodes, snapshot_episodes, max_total_steps
+    )
     run_ids = _wanted_runs(runs, only_runs)
     realiser = _Realiser(
         world, LearningProblem.of(world, agent, learning), schedule, Event(), keep_q
@@ -131,7 +139,7 @@ def train(
     if resume is not None:
         resume.check_same_training(world, agent, learning, schedule)
         run_ids = [k for k in run_ids if k not in resume.run_ids]
-    realisations, interrupted = _on_threads(realiser, run_ids, _n_threads(threads), progress)
+    realisations, interrupted = _on_threads(realiser, run_ids, n_threads(threads), progress)
     result = resume
     if realisations:
         trained = _collect(world, agent, learning, schedule, realisations)
@@ -148,12 +156,14 @@ def _schedule(
     until_converged: bool,
     min_episodes: int,
     snapshot_episodes: Sequence[int],
+    max_total_steps: int,
 ) -> Schedule:
     for name, value, least in (
         ("runs", runs, 1),
         ("episodes", episodes, 1),
         ("min_episodes", min_episodes, 1),
         ("seed", seed, 0),
+        ("max_total_steps", max_total_steps, 1),
     ):
         if isinstance(value, bool) or int(value) != value or value < least:
             raise ValueError(f"{name}: {value!r} must be a whole number of at least {least}")
@@ -162,7 +172,13 @@ def _schedule(
     if snapshots and snapshots[0] < 1:
         raise ValueError(f"snapshot_episodes: {snapshots[0]} must be at least 1")
     return Schedule(
-        int(runs), int(episodes), int(seed), until_converged, int(min_episodes), snapshots
+        int(runs),
+        int(episodes),
+        int(seed),
+        until_converged,
+        int(min_episodes),
+        snapshots,
+        int(max_total_steps),
     )
 
 
@@ -175,7 +191,8 @@ def _wanted_runs(runs: int, only_runs: Sequence[int] | None) -> list[int]:
     return wanted
 
 
-def _n_threads(threads: int | None) -> int:
+def n_threads(threads: int | None) -> int:
+    """Threads to use: those asked for, or one a core that this process may run on."""
     if threads is None:
         return (
             len(os.sched_getaffinity(0))
@@ -243,6 +260,8 @@ class _Realiser:
 
     def _limit(self, counters: NDArray[np.int64]) -> int:
         """Episode at which the run ends, as far as is known by now."""
+        if counters[common.TOTAL_STEPS] >= self.schedule.max_total_steps:
+            return int(counters[common.EPISODE])
         if self.schedule.until_converged and counters[common.CONVERGED_EPISODE] >= 0:
             return self.schedule.guaranteed_episodes
         return self.schedule.episodes

@@ -8,7 +8,6 @@ bit for bit, only slower.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -26,12 +25,8 @@ from rssnav.kernels.common import (
     extended_hash,
 )
 from rssnav.kernels.compiling import jit
-from rssnav.kernels.xoshiro import (
-    draw,
-    gaussian,
-    index_from_low_bits,
-    unit_from_high_bits,
-)
+from rssnav.kernels.readings import fluctuating
+from rssnav.kernels.xoshiro import draw, index_from_low_bits, unit_from_high_bits
 
 LISTED, TOLERANCE, INTERVALS = range(3)
 """How a reading becomes a label: by its cell's listed label, tolerance states, fixed bins."""
@@ -70,12 +65,9 @@ class Book(NamedTuple):
 @jit()
 def reading_in(sensor: Sensor, book: Book, generator: NDArray[np.uint64], cell: int) -> float:
     """RSS read in a cell [dBm]: a first-order autoregressive fluctuation on the map's value."""
-    if sensor.sigma_db == 0.0:
-        return sensor.rss_dbm[cell]
-    rho = sensor.correlation
-    innovation = sensor.sigma_db * gaussian(draw(generator), draw(generator))
-    book.fluctuation_db[0] = rho * book.fluctuation_db[0] + math.sqrt(1.0 - rho * rho) * innovation
-    return sensor.rss_dbm[cell] + book.fluctuation_db[0]
+    return fluctuating(
+        sensor.rss_dbm[cell], sensor.sigma_db, sensor.correlation, book.fluctuation_db, generator
+    )
 
 
 @jit(inline="always")

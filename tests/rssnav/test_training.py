@@ -249,3 +249,22 @@ def test_a_run_cannot_be_merged_with_itself(room_world):
 def test_options_out_of_range_are_refused_by_name(room_world, name, value):
     with pytest.raises(ValueError, match=f"^{name}"):
         train(room_world, RssAgent(), **{"runs": 2, "episodes": 2, name: value})
+
+
+def test_a_run_that_has_flown_its_steps_begins_no_more_episodes(room_world):
+    options = {"runs": 3, "learning": LEARNING, "seed": 5}
+    whole = train(room_world, RssAgent(), episodes=400, **options)
+    budget = train(room_world, RssAgent(), episodes=400, max_total_steps=1500, **options)
+    flown = budget.episodes_flown
+    assert np.all(flown < 400)
+    for run in range(3):
+        assert np.array_equal(budget.steps[run, : flown[run]], whole.steps[run, : flown[run]])
+        assert budget.steps[run, : flown[run]].sum() >= 1500
+        assert budget.steps[run, : flown[run] - 64].sum() < 1500
+    assert budget.visit_counts.shape == (0, room_world.n_states)
+
+
+def test_a_step_budget_survives_the_file(room_world, tmp_path):
+    result = train(room_world, RssAgent(), runs=1, episodes=9, max_total_steps=50)
+    result.save(tmp_path / "result.h5")
+    assert type(result).load(tmp_path / "result.h5").schedule == result.schedule

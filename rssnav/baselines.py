@@ -1,0 +1,275 @@
+"""Searchers that do not learn from flight to flight: what reinforcement learning is compared with.
+
+Each flies once from the start, as long as ``max_steps`` seconds, until a reading exceeds the level
+at which the RSS agent's episodes end. :class:`RandomWalk` and :class:`RssAscent` know nothing but
+their readings; :class:`ParticleFilter` also knows the floor plan, its own place in it, and a model
+of how RSS falls with distance.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.agents import QLearning, RssAgent
+from rssnav.kernels import particle_filter, searching
+from rssnav.kernels.common import Moves
+from rssnav.kernels.particle_filter import Belief, Chart, Model
+from rssnav.kernels.searching import Flight, Receiver
+from rssnav.learners import moves_of
+from rssnav.planning import path_length_m
+from rssnav.states import Fluctuation
+from rssnav.training import generator_states, n_threads
+from rssnav.world import GridWorld
+
+_STREAM = 1 << 32  # realisation numbers of searches: apart from those of trainings
+
+
+@dataclass(frozen=True)
+class RandomWalk:
+    """Every possible step is equally likely."""
+
+    @property
+    def name(self) -> str:
+        """Short name for tables and files."""
+        return "random walk"
+
+
+@dataclass(frozen=True)
+class RssAscent:
+    """Greedy ascent of the RSS: go on to the first neighbour tried that reads more than here.
+
+    Neighbours are tried by flying there (and back, where it reads no more), the one straight ahead
+    first, the others in random order.
+
+    Parameters
+    ----------
+    readings : int
+        Readings averaged in each cell against fluctuation; each takes a second.
+    escape_steps : int
+        Random steps flown from a local maximum; with 0 the flight gives up there.
+    """
+
+    readings: int = 1
+    escape_steps: int = 30
+
+    def __post_init__(self) -> None:
+        for name, least in (("readings", 1), ("escape_steps", 0)):
+            value = getattr(self, name)
+            if value < least:
+                raise ValueError(f"{name}: {value!r} must be at least {least}")
+
+    @property
+    def name(self) -> str:
+        """Short name for tables and files."""
+        averaged = f", mean of {self.readings} readings" if self.readings > 1 else ""
+        kind = "with escapes" if self.escape_steps else "alone"
+        return f"RSS ascent {kind}{averaged}"
+
+
+@dataclass(frozen=True)
+class ParticleFilter:
+    """Bayesian search with a log-distance path-loss model, p - 10 n log10(d / 1 m).
+
+    Parameters
+    ----------
+    particles : int
+        Hypotheses kept.
+    power_dbm : (float, float)
+        Range of p, the reading at 1 m [dBm]. 25 dBm at 2.4 GHz are -15 dBm in free space.
+    exponent : (float, float)
+        Range of the path-loss exponent n.
+    sigma_db : float
+        Standard deviation of readings about the model: shadowing, multipath and fluctuation [dB].
+    fresh_share : float
+        Share of new hypotheses at each resampling.
+    steps_to_draw : int
+        Steps flown towards a drawn hypothesis before another is drawn.
+    """
+
+    particles: int = 500
+    power_dbm: tuple[float, float] = (-20.0, -10.0)
+    exponent: tuple[float, float] = (1.5, 5.0)
+    sigma_db: float = 8.0
+    fresh_share: float = 0.1
+    steps_to_draw: int = 40
+
+    def __post_init__(self) -> None:
+        for name, holds in (
+            ("particles", self.particles >= 2),
+            ("power_dbm", self.power_dbm[0] < self.power_dbm[1]),
+            ("exponent", 0.0 < self.exponent[0] < self.exponent[1]),
+            ("sigma_db", 0.0 < self.sigma_db < math.inf),
+            ("fresh_share", 0.0 <= self.fresh_share < 1.0),
+            ("steps_to_draw", self.steps_to_draw >= 1),
+        ):
+            if not holds:
+                raise ValueError(f"{name}: {getattr(self, name)!r} {_RIGHT[name]}")
+
+    @property
+    def name(self) -> str:
+        """Short name for tables and files."""
+        return "particle filter"
+
+
+_RIGHT = {
+    "particles": "must be at least 2",
+    "power_dbm": "must be a lower and a higher level [dBm]",
+    "exponent": "must be a lower and a higher exponent, both positive",
+    "sigma_db": "must be a positive, finite number of dB",
+    "fresh_share": "must lie in [0, 1)",
+    "steps_to_draw": "must be at least 1",
+}
+_JITTER = np.array([0.5, 0.5, 0.3, 0.05])  # x, y [m], p [dB], n
+
+Searcher = RandomWalk | RssAscent | ParticleFilter
+
+
+@dataclass(frozen=True, eq=False)
+class SearchResult:
+    """Flights of a searcher (R of them).
+
+    Attributes
+    ----------
+    found : (R,) bool
+        Whether the flight ended in a cell whose steady RSS says that the source is there.
+    false_alarm : (R,) bool
+        Whether it ended by a reading that said so wrongly, by fluctuation.
+    steps : (R,) int64
+        Seconds flown, those spent on further readings in a cell included.
+    length_m : (R,) float64
+        Length flown [m].
+    flights : tuple of (n + 1,) int32
+        State at each second, the start first.
+    """
+
+    found: NDArray[np.bool_]
+    false_alarm: NDArray[np.bool_]
+    steps: NDArray[np.int64]
+    length_m: NDArray[np.float64]
+    flights: tuple[NDArray[np.int32], ...]
+
+
+def search(
+    world: GridWorld,
+    searcher: Searcher,
+    *,
+    runs: int = 100,
+    max_steps: int = 20_000,
+    seed: int = 0,
+    terminal_dbm: float = -21.0,
+    fluctuation: Fluctuation | None = None,
+    threads: int | None = None,
+) -> SearchResult:
+    """Fly a searcher from the start, many times over.
+
+    Parameters
+    ----------
+    world : GridWorld
+        Where it flies.
+    searcher : RandomWalk, RssAscent or ParticleFilter
+        What it goes by.
+    runs : int
+        Flights.
+    max_steps : int
+        Seconds after which a flight is given up.
+    seed : int
+        Same seed, same flights, for any number of threads.
+    terminal_dbm : float
+        Reading above which the source is found [dBm].
+    fluctuation : Fluctuation, optional
+        How readings differ from the map; not at all by default.
+    threads : int, optional
+        Threads that flights are spread over; all cores by default.
+
+    Raises
+    ------
+    ValueError
+        For a number out of range.
+    WorldError
+        When the RSS agent could not fly in this world either.
+    """
+    for name, value in (("runs", runs), ("max_steps", max_steps)):
+        if value < 1:
+            raise ValueError(f"{name}: {value!r} must be at least 1")
+    process = RssAgent(terminal_dbm=terminal_dbm).decision_process(world, QLearning())
+    receiver_of = _receivers(world, fluctuation or Fluctuation(), terminal_dbm)
+    fly = _flying(searcher, world, moves_of(process))
+
+    def one(run: int) -> tuple[NDArray[np.int32], bool]:
+        states = np.full(max_steps + 1, world.start_state, dtype=np.int32)
+        generator = generator_states(seed, _STREAM + run)[:4].copy()
+        flight = Flight(states, np.zeros(1, dtype=np.int64), generator)
+        claimed = fly(receiver_of(), flight)
+        return states[: int(flight.seconds[0]) + 1].copy(), claimed
+
+    with ThreadPoolExecutor(n_threads(threads)) as pool:
+        flown = list(pool.map(one, range(runs)))
+    flights = tuple(states for states, _ in flown)
+    claimed = np.array([claim for _, claim in flown])
+    there = np.array([process.terminal[states[-1]] for states in flights])
+    return SearchResult(
+        found=claimed & there,
+        false_alarm=claimed & ~there,
+        steps=np.array([states.size - 1 for states in flights], dtype=np.int64),
+        length_m=np.array([path_length_m(world, states) for states in flights]),
+        flights=flights,
+    )
+
+
+Fly = Callable[[Receiver, Flight], bool]
+
+
+def _receivers(
+    world: GridWorld, fluctuation: Fluctuation, found_dbm: float
+) -> Callable[[], Receiver]:
+    """Receivers that share all but their fluctuation."""
+    return lambda: Receiver(
+        world.rss_dbm,
+        fluctuation.sigma_db,
+        fluctuation.correlation,
+        np.zeros(1),
+        found_dbm,
+    )
+
+
+def _flying(searcher: Searcher, world: GridWorld, moves: Moves) -> Fly:
+    """Searcher as a function that fills a flight."""
+    if isinstance(searcher, RandomWalk):
+        return lambda receiver, flight: searching.walk(
+            moves, receiver, flight, flight.states.size - 1
+        )
+    if isinstance(searcher, RssAscent):
+        return lambda receiver, flight: searching.ascend(
+            moves, receiver, flight, searcher.readings, searcher.escape_steps
+        )
+    model = _model(searcher, world)
+    count, size = searcher.particles, world.n_states
+
+    def track(receiver: Receiver, flight: Flight) -> bool:
+        belief = Belief(np.empty((count, 4)), np.empty(count), np.empty((count, 4)))
+        hops, queue = np.empty(size, dtype=np.int32), np.empty(size, dtype=np.int32)
+        chart = Chart(world.position, hops, queue)
+        return particle_filter.track(moves, receiver, flight, model, belief, chart)
+
+    return track
+
+
+def _model(searcher: ParticleFilter, world: GridWorld) -> Model:
+    """Prior over the part of the plan that can be reached, and the likelihood."""
+    low_xy, high_xy = world.position.min(axis=0), world.position.max(axis=0)
+    ranges = (searcher.power_dbm, searcher.exponent)
+    return Model(
+        low=np.array([*low_xy, *(low for low, _ in ranges)]),
+        high=np.array([*high_xy, *(high for _, high in ranges)]),
+        jitter=_JITTER,
+        sigma_db=searcher.sigma_db,
+        fresh_share=searcher.fresh_share,
+        found_m=2.0,
+        steps_to_draw=searcher.steps_to_draw,
+    )
