@@ -7,7 +7,7 @@ viridis. Both stay apart for colour-blind readers and in print.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from io import BytesIO
 from pathlib import Path
@@ -17,7 +17,8 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Colormap, Normalize, to_rgb
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
@@ -44,7 +45,7 @@ SOURCE = "#d81b60"
 START = "#ffffff"
 MAP_COLOURS = "viridis"
 
-STYLE: dict[str, Any] = {
+STYLE: dict[Any, Any] = {
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 8.0,
@@ -77,7 +78,7 @@ STYLE: dict[str, Any] = {
     "grid.linewidth": 0.4,
     "image.interpolation": "nearest",
     "pdf.fonttype": 42,
-    "figure.constrained_layout.h_pad": 0.05,
+    "figure.constrained_layout.h_pad": 0.07,
     "figure.constrained_layout.w_pad": 0.04,
     "savefig.facecolor": "white",
     "svg.hashsalt": "rssnav",
@@ -116,6 +117,7 @@ def save_figure(figure: Figure, stem: Path) -> bytes:
     stem.parent.mkdir(parents=True, exist_ok=True)
     png = png_bytes(figure)
     stem.with_name(f"{stem.name}.png").write_bytes(png)
+    figure.set_layout_engine("none")  # the places found for the PNG hold for the PDF too
     with rc_context(STYLE):
         figure.savefig(stem.with_name(f"{stem.name}.pdf"), metadata={"CreationDate": None})
     return png
@@ -140,7 +142,6 @@ def draw_cells(
     values: NDArray[np.float64],
     *,
     norm: Normalize,
-    colours: str | Colormap = MAP_COLOURS,
 ) -> AxesImage:
     """Draw a value per cell, true to scale, with axes in metres.
 
@@ -153,17 +154,30 @@ def draw_cells(
         One value per cell.
     norm : matplotlib.colors.Normalize
         From values to colours.
-    colours : str or Colormap
-        Colour map.
     """
     half = grid.cell_size_m / 2
     extent = (grid.x[0] - half, grid.x[-1] + half, grid.y[0] - half, grid.y[-1] + half)
-    image = ax.imshow(values, origin="lower", extent=extent, norm=norm, cmap=colours)
+    image = ax.imshow(values, origin="lower", extent=extent, norm=norm, cmap=MAP_COLOURS)
     ax.set_aspect("equal")
     for axis, name in ((ax.xaxis, "$x$ [m]"), (ax.yaxis, "$y$ [m]")):
         axis.set_label_text(name)
         axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     return image
+
+
+def draw_colour_bar(
+    figure: Figure, panels: Sequence[Axes], norm: Normalize, label: str, alpha: float = 1.0
+) -> None:
+    """Draw the scale that some panels share on their right; the least values lie below it."""
+    bar = figure.colorbar(
+        ScalarMappable(norm, MAP_COLOURS),
+        ax=panels,
+        extend="min",
+        pad=0.01,
+        aspect=36,
+        alpha=alpha,
+    )
+    bar.set_label(label)
 
 
 def draw_walls(ax: Axes, plan: FloorPlan, height_m: float, colour: str = INK) -> None:

@@ -34,7 +34,7 @@ class Picture:
     key, title : str
         Its name in addresses, and for people.
     of_paper : str
-        The paper's figure that it stands for.
+        Where the paper has it.
     caption : str
         What one sees.
     png : bytes
@@ -90,10 +90,10 @@ class Report:
 def number(value: float) -> str:
     """Write a number with about four digits."""
     if value == int(value) and abs(value) < 1e6:
-        return f"{int(value):,}"
+        return f"{int(value):,}".replace("-", "−")
     size = abs(value)
     digits = 0 if size >= 1000 else 1 if size >= 100 else 2 if size >= 1 else 3
-    return f"{value:,.{digits}f}"
+    return f"{value:,.{digits}f}".replace("-", "−")
 
 
 def render(report: Report) -> str:

@@ -91,6 +91,6 @@ def caption(_data: PaperData) -> str:
     """Say what the figure shows."""
     return (
         "The RSS-based agent senses only the RSS: its value names the state, its change since the "
-        "last position is the reward, and -21 dBm or more means that the source is found. The "
+        "last position is the reward, and more than −21 dBm means that the source is found. The "
         "location-based agent has (x, y) as its state and 1/D as its reward instead."
     )

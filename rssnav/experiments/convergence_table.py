@@ -11,7 +11,7 @@ from rssnav.results import TrainingResult
 
 def _columns() -> tuple[Column, ...]:
     times = [
-        Column(f"{part}{measure.name}", f"{heading}{measure.heading}", measure.digits)
+        Column(f"{part}{measure.name}", f"{heading}{measure.heading}", measure.digits, not part)
         for measure in MEASURES
         for part, heading in (("", ""), ("low_", "2.5 % "), ("high_", "97.5 % "))
     ]
@@ -37,7 +37,8 @@ def table(data: PaperData) -> Table:
         "convergence",
         "Convergence and truncated episodes",
         "A run has converged when it flies the same path in three episodes on end. Means over "
-        "the runs that converged, with 95 % bootstrap intervals of the mean. An episode is "
+        "the runs that converged; their 95 % bootstrap intervals are in the figure above and in "
+        "convergence.csv. An episode is "
         f"truncated after {limit:,} steps; it does not count as an arrival.",
         _columns(),
         tuple(_row(key, result) for key, result in data.results.items()),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter, NullLocator
+from matplotlib.ticker import NullLocator
 from numpy.typing import NDArray
 
 from rssnav.experiments.data import AGENT_LABELS, AGENTS, AgentName, PaperData
@@ -32,6 +32,8 @@ class Measure:
         Names for files, axes (with the unit) and panels.
     digits : int
         Digits after the decimal point that tables show.
+    scale : str
+        Scale of its axis, "linear" from zero or "log".
     of : callable
         From a training to the time of each run that converged, shape (C,).
     """
@@ -40,6 +42,7 @@ class Measure:
     heading: str
     title: str
     digits: int
+    scale: str
     of: Callable[[TrainingResult], NDArray[np.float64]]
 
 
@@ -53,7 +56,7 @@ def _episodes(result: TrainingResult) -> NDArray[np.float64]:
 
 
 def _flight_time_h(result: TrainingResult) -> NDArray[np.float64]:
-    return result.converged_steps[converged(result)] * (STEP_S / 3600.0)
+    return result.converged_steps[converged(result)].astype(np.float64) * (STEP_S / 3600.0)
 
 
 def _cpu_time_ms(result: TrainingResult) -> NDArray[np.float64]:
@@ -61,9 +64,9 @@ def _cpu_time_ms(result: TrainingResult) -> NDArray[np.float64]:
 
 
 MEASURES = (
-    Measure("episodes_to_convergence", "episodes", "episodes", 0, _episodes),
-    Measure("flight_time_h", "flight time [h]", "simulated flight time", 1, _flight_time_h),
-    Measure("cpu_time_ms", "CPU time [ms]", "CPU time", 1, _cpu_time_ms),
+    Measure("episodes_to_convergence", "episodes", "episodes", 0, "linear", _episodes),
+    Measure("flight_time_h", "flight time [h]", "simulated flight time", 1, "log", _flight_time_h),
+    Measure("cpu_time_ms", "CPU time [ms]", "CPU time", 1, "log", _cpu_time_ms),
 )
 
 
@@ -85,10 +88,11 @@ def _draw_measure(ax: Axes, data: PaperData, measure: Measure) -> None:
         for agent in AGENTS:
             _draw_curve(ax, data, measure, number, agent)
     ax.set_xscale("log", base=2)
-    ax.set_yscale("log")
+    ax.set_yscale(measure.scale)
+    if measure.scale == "linear":
+        ax.set_ylim(bottom=0.0)
     ax.set_xticks(data.speeds, [str(speed) for speed in data.speeds])
     ax.xaxis.set_minor_locator(NullLocator())
-    ax.yaxis.set_minor_formatter(NullFormatter())
     ax.set_xlabel("speed [m/s]")
     ax.set_ylabel(f"{measure.heading} to convergence")
     ax.grid(True, axis="y")

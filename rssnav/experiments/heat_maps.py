@@ -6,12 +6,14 @@ import math
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from rssnav.experiments.data import PaperData, Scenario
 from rssnav.figures import (
+    MAP_COLOURS,
     PAGE_IN,
     draw_cells,
     draw_source,
@@ -41,10 +43,10 @@ def draw(data: PaperData) -> Figure:
     for k, (number, scenario) in enumerate(data.scenarios.items()):
         width_in = scale * (bounds[k][2] - bounds[k][0])
         panels.append(_axes(figure, left_in, _TOP_IN, width_in, heights_in[k]))
-        image = draw_map(panels[k], scenario, norm)
+        draw_map(panels[k], scenario, norm)
         label_panel(panels[k], "ab"[k], f"Scenario {number}")
         left_in += width_in + _GAP_IN
-    _draw_keys(figure, panels[0], image, data)
+    _draw_keys(figure, panels[0], norm, data)
     return figure
 
 
@@ -61,13 +63,15 @@ def _axes(figure: Figure, left: float, top: float, width: float, height: float) 
     )
 
 
-def _draw_keys(figure: Figure, ax: Axes, image: AxesImage, data: PaperData) -> None:
+def _draw_keys(figure: Figure, ax: Axes, norm: Normalize, data: PaperData) -> None:
     """Draw colour bar and legend below the first map."""
     width_in, height_in = figure.get_size_inches()
     position = ax.get_position()
     top_in = height_in * (1.0 - position.y0) + _BELOW_MAP_IN
     bar_axes = _axes(figure, width_in * position.x0, top_in, width_in * position.width, _BAR_IN)
-    bar = figure.colorbar(image, cax=bar_axes, orientation="horizontal", extend="min")
+    bar = figure.colorbar(
+        ScalarMappable(norm, MAP_COLOURS), cax=bar_axes, orientation="horizontal", extend="min"
+    )
     bar.set_label("RSS [dBm]")
     plan = next(iter(data.scenarios.values())).plan
     marks = [draw_source(ax, plan), draw_start(ax, plan)]
@@ -96,8 +100,8 @@ def colour_scale(data: PaperData) -> Normalize:
 def caption(data: PaperData) -> str:
     """Say what the figure shows."""
     ranges = "; ".join(
-        f"Scenario {number}: {s.radio_map.rss_dbm[np.isfinite(s.radio_map.rss_dbm)].min():.1f} to "
-        f"{s.radio_map.rss_dbm.max():.1f} dBm in {s.radio_map.rss_dbm.size} cells"
+        f"Scenario {number}: {_dbm(s.radio_map.rss_dbm[np.isfinite(s.radio_map.rss_dbm)].min())} "
+        f"to {_dbm(s.radio_map.rss_dbm.max())} dBm in {s.radio_map.rss_dbm.size:,} cells"
         for number, s in data.scenarios.items()
     )
     grid = next(iter(data.scenarios.values())).radio_map.grid
@@ -106,3 +110,7 @@ def caption(data: PaperData) -> str:
         f"all paths in each {grid.cell_size_m:g} m cell ({ranges}). Black lines are walls at that "
         "height; hallways in line with the source guide the signal, and rooms off them are dark."
     )
+
+
+def _dbm(value: float) -> str:
+    return f"{value:.1f}".replace("-", "−")

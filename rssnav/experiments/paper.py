@@ -75,9 +75,9 @@ class _Run:
     progress: Progress
     notice: Notice
 
-    def counter(self, stage: str) -> Callable[[int, int], None]:
-        """Return the progress of one stage."""
-        return lambda done, total: self.progress(stage, done, total)
+    def counter(self, stage: str, part: int = 0, parts: int = 1) -> Callable[[int, int], None]:
+        """Return the progress of one of the equally long parts of a stage."""
+        return lambda done, size: self.progress(stage, part * size + done, parts * size)
 
 
 def run_paper(
@@ -208,20 +208,19 @@ def _train(run: _Run, scenarios: dict[int, Scenario]) -> dict[Configuration, Tra
     """Train all configurations."""
     keys = trainings.configurations(scenarios, SPEEDS)
     worlds = trainings.worlds(scenarios, SPEEDS)
-    total = run.plan.runs * len(keys)
     results: dict[Configuration, TrainingResult] = {}
+    with run.record.stage("compilation"):
+        trainings.compile_loop(next(iter(worlds.values())))
     with run.record.stage("training"):
         for k, key in enumerate(keys):
-            before = k * run.plan.runs
+            counter = run.counter("training", k, len(keys))
             begin_s = time.perf_counter()
-            results[key], trained = run.plan.result(
-                key,
-                worlds[key.scenario, key.speed],
-                lambda done, _, before=before: run.progress("training", before + done, total),
-            )
+            results[key], trained = run.plan.result(key, worlds[key.scenario, key.speed], counter)
             if trained:
                 run.record.trained[key.label] = time.perf_counter() - begin_s
-            run.progress("training", before + run.plan.runs, total)
+            counter(run.plan.runs, run.plan.runs)
+    if kept := len(keys) - len(run.record.trained):
+        run.notice(f"{kept} of {len(keys)} trainings were taken over from {run.plan.folder}")
     return results
 
 
@@ -233,15 +232,12 @@ def _fly_first_episodes(
     first: dict[Configuration, FirstEpisodes] = {}
     with run.record.stage("first episodes"):
         for k, key in enumerate(keys):
-            before, total = k * run.plan.runs, len(keys) * run.plan.runs
             first[key] = first_episodes(
                 results[key],
                 VISIT_EPISODES[0],
                 SHOWN_EPISODES,
                 threads=run.threads,
-                progress=lambda done, _, before=before: run.progress(
-                    "first episodes", before + done, total
-                ),
+                progress=run.counter("first episodes", k, len(keys)),
             )
     return first
 

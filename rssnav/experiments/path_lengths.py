@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
 from rssnav.experiments.data import AGENT_LABELS, Configuration, PaperData, flights
 from rssnav.experiments.paper_values import PATH_LENGTH_M
@@ -12,54 +15,77 @@ from rssnav.results import TrainingResult
 
 _TOLERANCE = 1e-6
 
-_COLUMNS = (
+_PLACE = (
     Column("scenario", "Scenario"),
     Column("agent", "Agent"),
     Column("speed_mps", "Speed [m/s]"),
-    Column("arrived", "Flights that arrive"),
-    Column("mean_m", "Length: mean [m]", 2),
-    Column("sd_m", "± sd [m]", 2),
-    Column("median_m", "median [m]", 2),
-    Column("paper_m", "Paper [m]", 2),
-    Column("ratio_to_paper", "Ours / paper", 3),
-    Column("shortest_m", "Shortest possible [m]", 2),
-    Column("mean_steps", "Steps: mean", 1),
-    Column("sd_steps", "± sd", 1),
-    Column("fewest_steps", "Fewest possible"),
-    Column("optimal_m", "Value iteration [m]", 2),
-    Column("optimal_steps", "Value iteration [steps]"),
-    Column("return_share", "Return / optimal", 4),
 )
 
 
 def table(data: PaperData) -> Table:
-    """Make a row per configuration."""
+    """Make a row per configuration: metres and steps, beside the paper's and the least possible."""
     return Table(
         "path_lengths",
-        "Final flights (the paper's Table IV)",
+        "Length of the final trajectories (the paper's Table IV)",
         "Greedy flights after training, over the realisations whose flight arrives; one that runs "
-        "in circles is left out and counted. Shortest possible, fewest possible: Dijkstra over the "
-        "possible steps. Value iteration: the flight that is optimal for the agent's own rewards, "
-        "and the learned flights' mean discounted return as a share of the optimum. Agents pay per "
-        "step, straight or diagonal, so they learn few steps rather than few metres.",
-        _COLUMNS,
-        tuple(_row(data, key, result) for key, result in data.results.items()),
+        "in circles is left out and counted. Shortest and fewest possible: Dijkstra over the "
+        "possible steps. Agents pay per step, straight or diagonal alike, so they learn few steps "
+        "rather than few metres.",
+        (
+            *_PLACE,
+            Column("arrived", "Flights that arrive"),
+            Column("mean_m", "Mean [m]", 2),
+            Column("sd_m", "± sd [m]", 2),
+            Column("median_m", "Median [m]", 2),
+            Column("paper_m", "Paper [m]", 2),
+            Column("ratio_to_paper", "Mean / paper", 3),
+            Column("shortest_m", "Shortest possible [m]", 2),
+            Column("mean_steps", "Mean [steps]", 1),
+            Column("sd_steps", "± sd [steps]", 1),
+            Column("fewest_steps", "Fewest possible [steps]"),
+        ),
+        tuple(_flown(data, key, result) for key, result in data.results.items()),
     )
 
 
-def _row(data: PaperData, key: Configuration, result: TrainingResult) -> tuple[Cell, ...]:
+def optimum_table(data: PaperData) -> Table:
+    """Make a row per configuration: learned flights beside the optimum of the agent's rewards."""
+    return Table(
+        "optimum",
+        "Learned flights against the optimum",
+        "Value iteration solves the decision process that each agent learns in; its greedy flight "
+        "is what Q-learning would converge to. The return is the discounted sum of rewards from "
+        "the start, mean over the flights that arrive.",
+        (
+            *_PLACE,
+            Column("mean_m", "Learned [m]", 2),
+            Column("optimal_m", "Optimal [m]", 2),
+            Column("mean_steps", "Learned [steps]", 1),
+            Column("optimal_steps", "Optimal [steps]"),
+            Column("mean_return", "Learned return", 2),
+            Column("optimal_return", "Optimal return", 2),
+            Column("return_share", "Share of the optimum", 4),
+        ),
+        tuple(_optimum(key, result) for key, result in data.results.items()),
+    )
+
+
+def _flown(data: PaperData, key: Configuration, result: TrainingResult) -> tuple[Cell, ...]:
     place = (key.scenario, key.speed)
+    steps = result.path_steps[result.reached]
     return (
-        key.scenario,
-        AGENT_LABELS[key.agent],
-        key.speed,
+        *_place(key),
         int(result.reached.sum()),
         *_lengths(result, PATH_LENGTH_M.get(key)),
         data.shortest_in_metres[place].length_m,
-        *_steps(result),
+        _mean(steps),
+        float(steps.std()) if steps.size else None,
         data.shortest_in_steps[place].steps,
-        *_optimum(result),
     )
+
+
+def _place(key: Configuration) -> tuple[Cell, ...]:
+    return key.scenario, AGENT_LABELS[key.agent], key.speed
 
 
 def _lengths(result: TrainingResult, paper_m: float | None) -> tuple[Cell, ...]:
@@ -71,19 +97,24 @@ def _lengths(result: TrainingResult, paper_m: float | None) -> tuple[Cell, ...]:
     return mean_m, float(lengths_m.std()), float(np.median(lengths_m)), paper_m, ratio
 
 
-def _steps(result: TrainingResult) -> tuple[Cell, ...]:
-    steps = result.path_steps[result.reached]
-    return (float(steps.mean()), float(steps.std())) if steps.size else (None, None)
-
-
-def _optimum(result: TrainingResult) -> tuple[Cell, ...]:
-    """Length and steps of the optimal flight, and the learned flights' share of its return."""
+def _optimum(key: Configuration, result: TrainingResult) -> tuple[Cell, ...]:
     process = result.agent.decision_process(result.world, result.learning)
     gamma = result.learning.gamma
     solution = value_iteration(process, gamma, tolerance=_TOLERANCE)
     best = greedy_path(result.world, process, solution.q)
-    if not best.reached:
-        return None, None, None
-    returns = [discounted_return(process, flight, gamma) for flight in flights(result)]
-    share = float(np.mean(returns)) / discounted_return(process, best.states, gamma)
-    return best.length_m, best.steps, share if returns else None
+    learned = _mean([discounted_return(process, flight, gamma) for flight in flights(result)])
+    optimal = discounted_return(process, best.states, gamma) if best.reached else None
+    return (
+        *_place(key),
+        _mean(result.path_length_m[result.reached]),
+        best.length_m if best.reached else None,
+        _mean(result.path_steps[result.reached]),
+        best.steps if best.reached else None,
+        learned,
+        optimal,
+        learned / optimal if learned is not None and optimal else None,
+    )
+
+
+def _mean(values: Sequence[float] | NDArray[np.float64] | NDArray[np.int64]) -> float | None:
+    return float(np.mean(values)) if len(values) else None

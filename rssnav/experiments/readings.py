@@ -40,13 +40,13 @@ READINGS: tuple[Reading, ...] = (
         "Where the grid lies",
         "Receivers at the cell centres (i + 0.5, j + 0.5) m; the start is the cell with the "
         "paper's index; the source at its coordinates.",
-        "Then exactly the twelve cells nearer than 2 m to the source read more than -21 dBm, and "
+        "Then exactly the twelve cells nearer than 2 m to the source read more than −21 dBm, and "
         "the source can be reached at 4 m/s in both scenarios.",
     ),
     Reading(
         "How a cell's power is formed",
         "Sum of the powers of all paths; their phases are ignored.",
-        "The -21 dBm rule needs it: with phases, fading hides most of the twelve cells.",
+        "The −21 dBm rule needs it: with phases, fading hides most of the twelve cells.",
     ),
     Reading(
         "Transmission through walls",

@@ -33,7 +33,7 @@ class PaperFigure:
     title : str
         What it is.
     of_paper : str
-        The paper's figure that it stands for.
+        Where the paper has it.
     draw : callable
         From the data to the figure.
     caption : callable
@@ -49,38 +49,48 @@ class PaperFigure:
 
 FIGURES: tuple[PaperFigure, ...] = (
     PaperFigure(
-        "agent_loop", "Agent and environment", "Fig. 2", agent_loop.draw, agent_loop.caption
+        "agent_loop",
+        "Agent and environment",
+        "the paper's Fig. 2",
+        agent_loop.draw,
+        agent_loop.caption,
     ),
-    PaperFigure("floor_plans", "Floor plans", "Fig. 3", floor_plans.draw, floor_plans.caption),
+    PaperFigure(
+        "floor_plans", "Floor plans", "the paper's Fig. 3", floor_plans.draw, floor_plans.caption
+    ),
     PaperFigure(
         "heat_maps",
         "Received signal strength",
-        "background of Fig. 4",
+        "the background of the paper's Fig. 4",
         heat_maps.draw,
         heat_maps.caption,
     ),
     PaperFigure(
         "trajectories",
         "Final trajectories at 1 m/s",
-        "Fig. 4",
+        "the paper's Fig. 4",
         trajectories.draw,
         trajectories.caption,
     ),
-    PaperFigure("visits", "Visits of each cell", "Fig. 5", visits.draw, visits.caption),
+    PaperFigure("visits", "Visits of each cell", "the paper's Fig. 5", visits.draw, visits.caption),
     PaperFigure(
         "steps_per_episode",
         "Steps per episode",
-        "Fig. 6",
+        "the paper's Fig. 6",
         steps_per_episode.draw,
         steps_per_episode.caption,
     ),
     PaperFigure(
         "convergence_time",
         "Convergence time against speed",
-        "Fig. 7",
+        "the paper's Fig. 7",
         convergence_time.draw,
         convergence_time.caption,
     ),
 )
 
-TABLES: tuple[Callable[[PaperData], Table], ...] = (path_lengths.table, convergence_table.table)
+TABLES: tuple[Callable[[PaperData], Table], ...] = (
+    convergence_table.table,
+    path_lengths.table,
+    path_lengths.optimum_table,
+)

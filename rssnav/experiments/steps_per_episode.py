@@ -45,7 +45,7 @@ def _draw_agent(ax: Axes, data: PaperData, agent: AgentName) -> None:
         ax.fill_between(episode, low, high, color=colour, alpha=0.18, linewidth=0)
         ax.plot(episode, steps.mean(axis=0), color=colour, label=f"{speed} m/s", lw=0.8)
     ax.set_yscale("log")
-    ax.set_xlim(0, steps.shape[1])
+    ax.set_xlim(0, SHOWN_EPISODES)
     ax.set_xlabel("episode")
     ax.grid(True, which="major")
 

@@ -24,17 +24,22 @@ class Column:
         Name for people, with its unit.
     digits : int
         Digits after the decimal point that people see.
+    shown : bool
+        Whether people see it, or only the CSV file has it.
     """
 
     name: str
     heading: str
     digits: int = 0
+    shown: bool = True
 
-    def shown(self, cell: Cell) -> str:
+    def text(self, cell: Cell) -> str:
         """Return a value as people see it."""
         if cell is None:
             return "–"
-        return f"{cell:,.{self.digits}f}" if isinstance(cell, float) else str(cell)
+        if isinstance(cell, str):
+            return cell
+        return f"{cell:,.{self.digits}f}".replace("-", "−")
 
 
 @dataclass(frozen=True)
@@ -59,10 +64,19 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
 
     @property
-    def shown_rows(self) -> list[list[str]]:
-        """Rows as people see them."""
+    def shown_columns(self) -> list[Column]:
+        """Columns that people see."""
+        return [column for column in self.columns if column.shown]
+
+    @property
+    def shown_rows(self) -> list[list[tuple[Cell, str]]]:
+        """Values of the columns that people see, each with its text."""
         return [
-            [column.shown(cell) for column, cell in zip(self.columns, row, strict=True)]
+            [
+                (cell, column.text(cell))
+                for column, cell in zip(self.columns, row, strict=True)
+                if column.shown
+            ]
             for row in self.rows
         ]
 
@@ -73,8 +87,10 @@ class Table:
 
     def save_csv(self, folder: Path) -> None:
         """Write ``key``.csv with full precision; a value that is not there is an empty field."""
-        with whole_file(folder / f"{self.key}.csv") as beside:
-            with beside.open("w", newline="", encoding="utf-8") as file:
-                writer = csv.writer(file)
-                writer.writerow(column.name for column in self.columns)
-                writer.writerows(self.rows)
+        with (
+            whole_file(folder / f"{self.key}.csv") as beside,
+            beside.open("w", newline="", encoding="utf-8") as file,
+        ):
+            writer = csv.writer(file)
+            writer.writerow(column.name for column in self.columns)
+            writer.writerows(self.rows)

@@ -69,7 +69,6 @@ class TrainingPlan:
         path = self.folder / f"{key.name}.h5"
         earlier = self._earlier(path, key, world)
         if earlier is not None and earlier.complete:
-            self.notice(f"{key.label}: {path} is up to date")
             return earlier, False
         if earlier is not None:
             self.notice(f"{key.label}: going on from {earlier.run_ids.size} of {self.runs} runs")
@@ -130,6 +129,11 @@ def worlds(
         for number, scenario in scenarios.items()
         for speed in speeds
     }
+
+
+def compile_loop(world: GridWorld) -> None:
+    """Make sure the learning loop is compiled, so that CPU times measure learning alone."""
+    train(world, AGENTS["location"], runs=1, episodes=1, learning=QLearning(max_steps=1))
 
 
 def configurations(

@@ -12,6 +12,7 @@ from rssnav.experiments.heat_maps import colour_scale, draw_map
 from rssnav.figures import (
     INK,
     PAGE_IN,
+    draw_colour_bar,
     draw_flight,
     draw_source,
     draw_start,
@@ -23,6 +24,7 @@ from rssnav.results import TrainingResult
 from rssnav.world import GOAL_DISTANCE_M
 
 SPEED = 1
+_PALE = 0.75
 _ORDER: tuple[AgentName, ...] = ("rss", "location")
 
 
@@ -37,8 +39,7 @@ def draw(data: PaperData) -> Figure:
     for column, agent in enumerate(_ORDER):
         for row, number in enumerate(data.scenarios):
             ax: Axes = panels[row, column]
-            image = draw_map(ax, data.scenarios[number], norm)
-            image.set_alpha(0.75)
+            draw_map(ax, data.scenarios[number], norm).set_alpha(_PALE)
             _draw_median_flight(ax, data, number, agent)
             letter = "abcd"[column * len(plans) + row]
             label_panel(ax, letter, f"{AGENT_LABELS[agent]}, Scenario {number}")
@@ -46,8 +47,7 @@ def draw(data: PaperData) -> Figure:
                 ax.tick_params(labelleft=False)
                 ax.set_ylabel("")
     _legend(figure, panels[0, 0], data)
-    bar = figure.colorbar(image, ax=panels.ravel().tolist(), extend="min", pad=0.01, aspect=36)
-    bar.set_label("RSS [dBm]")
+    draw_colour_bar(figure, panels.ravel().tolist(), norm, "RSS [dBm]", alpha=_PALE)
     return figure
 
 

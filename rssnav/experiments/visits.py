@@ -11,6 +11,7 @@ from rssnav.experiments.data import AGENT_LABELS, AgentName, PaperData
 from rssnav.figures import (
     PAGE_IN,
     draw_cells,
+    draw_colour_bar,
     draw_source,
     draw_start,
     draw_walls,
@@ -41,7 +42,7 @@ def draw(data: PaperData) -> Figure:
         for row, (shown, count) in enumerate(zip(result.visits, episodes, strict=True)):
             ax: Axes = panels[row, column]
             visited = np.ma.masked_equal(shown, 0.0)
-            image = draw_cells(ax, scenario.radio_map.grid, visited, norm=norm, colours="viridis")
+            draw_cells(ax, scenario.radio_map.grid, visited, norm=norm)
             ax.set_facecolor(_UNVISITED)
             draw_walls(ax, scenario.plan, scenario.radio_map.grid.height_m)
             draw_source(ax, scenario.plan)
@@ -49,8 +50,7 @@ def draw(data: PaperData) -> Figure:
             letter = "abcdef"[row * len(_ORDER) + column]
             label_panel(ax, letter, f"{AGENT_LABELS[agent]}, first {count} episodes")
             ax.label_outer()
-    bar = figure.colorbar(image, ax=panels.ravel().tolist(), extend="min", pad=0.01, aspect=36)
-    bar.set_label("visits of a cell, mean over runs")
+    draw_colour_bar(figure, panels.ravel().tolist(), norm, "visits of a cell, mean over runs")
     return figure
 
 
@@ -63,7 +63,8 @@ def caption(data: PaperData) -> str:
     )
     return (
         f"Visits of each cell from the first episode on, Scenario {SCENARIO}, {SPEED} m/s, mean "
-        f"over {data.n_runs} realisations, on one logarithmic scale; grey cells were never visited. "
+        f"over {data.n_runs} realisations, on one logarithmic scale; grey cells were never "
+        "visited. "
         f"In the first {result_episodes(data)[0]} episodes: {totals} visits in all. The RSS-based "
         "agent keeps to cells that lie in the light of the hallway; the location-based agent first "
         "searches the rooms too."

@@ -100,7 +100,8 @@ CLAIMS = (
         f"In the first {EARLY_EPISODES} episodes the location-based agent visits places near the "
         "start more often than the RSS-based one.",
         f"Visits per episode of cells within {NEAR_START_M:g} m of the start, in the first "
-        f"{EARLY_EPISODES} episodes of each run. Reproduced if the location-based agent's are more.",
+        f"{EARLY_EPISODES} episodes of each run. Reproduced if the location-based "
+        "agent's are more.",
         "visits per episode, location-based minus RSS-based",
         lambda data: list(_visits_near_start(data)),
     ),
