@@ -25,6 +25,10 @@ KIND, WHAT = range(2)
 """Columns of `Leg.marks`: one of the three above; the slab (full wall) or the profile."""
 
 
+NEAREST_M = 1e-9
+"""Shortest horizontal leg [m]: a receiver straight above the source is taken this far off."""
+
+
 class Leg(NamedTuple):
     """Room for one unfolded leg.
 
@@ -86,7 +90,7 @@ def unfold(
     """
     x, y = target
     px, py = images[i, IMAGE_X], images[i, IMAGE_Y]
-    length = math.sqrt((x - px) ** 2 + (y - py) ** 2)
+    length = max(math.sqrt((x - px) ** 2 + (y - py) ** 2), NEAREST_M)
     n = link[i, ITEMS]
     rest, k = length, n
     while k > 0:
