@@ -100,6 +100,10 @@ def test_a_speed_that_is_no_positive_whole_number_is_refused(room, speed):
         world_of(room, speed)
 
 
+def test_a_map_that_names_no_plan_is_taken_at_its_word(room):
+    assert world_of(room, plan_sha256="").n_states == world_of(room).n_states
+
+
 def test_a_map_of_another_plan_is_refused(room):
     with pytest.raises(WorldError, match=r"another plan than 'small'.*make the map again"):
         world_of(room, plan_sha256="6" * 64)
