@@ -11,9 +11,11 @@ from rssnav.results import TrainingResult
 
 def _columns() -> tuple[Column, ...]:
     times = [
-        Column(f"{part}{measure.name}", f"{heading}{measure.heading}", measure.digits, not part)
+        Column(
+            f"{part}{measure.name}", f"{heading}{measure.heading}", measure.digits, shown=not part
+        )
         for measure in MEASURES
-        for part, heading in (("", ""), ("low_", "2.5 % "), ("high_", "97.5 % "))
+        for part, heading in (("", "Mean "), ("low_", "2.5 % "), ("high_", "97.5 % "))
     ]
     return (
         Column("scenario", "Scenario"),
@@ -22,11 +24,11 @@ def _columns() -> tuple[Column, ...]:
         Column("runs", "Runs"),
         Column("converged", "Converged"),
         *times,
-        Column("longest_run_episodes", "Longest run [episodes]"),
+        Column("longest_run_episodes", "Longest run [episodes]", shown=False),
         Column("episodes", "Episodes flown"),
         Column("truncated", "Truncated episodes"),
         Column("truncated_share", "Truncated [%]", 2),
-        Column("cpu_s", "CPU time, all runs [s]", 1),
+        Column("cpu_s", "CPU time, all runs [s]", 1, shown=False),
     )
 
 

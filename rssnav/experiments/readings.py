@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from rssnav.experiments.data import PaperData
 from rssnav.experiments.tables import Column, Table
+from rssnav.store import agent_parameters
 
 
 @dataclass(frozen=True)
@@ -138,7 +139,7 @@ def parameters(data: PaperData) -> Table:
         "schedule": dataclasses.asdict(result.schedule),
     }
     for each in data.results.values():
-        groups[f"{each.agent.name} agent"] = dataclasses.asdict(each.agent)
+        groups[f"{each.agent.name} agent"] = agent_parameters(each.agent)
     rows = [(group, name, str(v)) for group, values in groups.items() for name, v in values.items()]
     return Table(
         "parameters",

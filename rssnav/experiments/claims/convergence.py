@@ -24,7 +24,7 @@ def _falls_with_speed(measure: Measure) -> Claim:
     return Claim(
         f"{measure.name.replace('_', '-')}-falls",
         f"Convergence time falls with speed for both agents (read as {measure.title}).",
-        f"{measure.title.capitalize()} to convergence, over the runs that converge. Reproduced "
+        f"{measure.title[0].upper()}{measure.title[1:]} to convergence, over the runs that converge. Reproduced "
         "where each speed takes less than the one before.",
         f"{measure.heading}, slower minus faster",
         lambda data: _falls(data, measure),
