@@ -1,0 +1,58 @@
+"""The tracer's paths beside the brute force's."""
+
+import numpy as np
+from buildings import Building
+from numpy.typing import NDArray
+from reference import Facets, Found, find_paths
+from scipy.spatial import cKDTree
+
+from raytrace import Paths, TraceConfig, Transmitter, trace_paths
+from raytrace.preparing import TIE_OFFSET_M
+
+Floats = NDArray[np.float64]
+
+
+def placed(position: tuple[float, float, float]) -> Floats:
+    """(3,) where the tracer takes a transmitter to stand [m]."""
+    return np.array(position) + np.array([*TIE_OFFSET_M, 0.0])
+
+
+def facets_of(building: Building) -> Facets:
+    """Return the building as the brute force sees it."""
+    return Facets(building.triangles, building.triangle_slab)
+
+
+def as_found(paths: Paths) -> Found:
+    """Return the tracer's paths as the brute force would have them."""
+    return Found(paths.receiver, paths.interactions.astype(np.int64), paths.vertices)
+
+
+def assert_same_paths(ours: Found, theirs: Found, tolerance_m: float) -> None:
+    """Require the same receivers, interactions and points, in any order."""
+    a, b = (
+        np.column_stack([p.receiver, p.kinds, p.vertices.reshape(len(p.receiver), -1)])
+        for p in (ours, theirs)
+    )
+    far_a, _ = cKDTree(b).query(a)
+    far_b, match = cKDTree(a).query(b)
+    extra, missing = (p[far > tolerance_m] for p, far in ((a, far_a), (b, far_b)))
+    assert not len(extra), f"{len(extra)} of {len(a)} paths are none: {extra[0]}"
+    assert not len(missing), f"{len(missing)} of {len(b)} paths are missing: {missing[0]}"
+    assert len(a) == len(b), f"{len(a)} paths, expected {len(b)}"
+    assert len(set(match.tolist())) == len(a), "some path is there twice"
+
+
+def check_every_path(
+    building: Building,
+    source: tuple[float, float, float],
+    receivers: Floats,
+    config: TraceConfig,
+    tolerance_m: float = 1e-9,
+) -> None:
+    """Require that the tracer's paths are the brute force's."""
+    paths = trace_paths(building.scene, Transmitter(source), receivers, config)
+    limits = config.max_reflections, config.max_diffractions
+    found = find_paths(facets_of(building), placed(source), receivers, *limits)
+    assert_same_paths(as_found(paths), found, tolerance_m)
+    steps = np.linalg.norm(np.diff(found.vertices, axis=1), axis=2).sum(axis=1)
+    np.testing.assert_allclose(np.sort(paths.length_m), np.sort(steps), rtol=0, atol=tolerance_m)

@@ -1,0 +1,89 @@
+"""Every path of the tracer is one of the brute force's, and the other way round."""
+
+import numpy as np
+import pytest
+import shapely
+from buildings import GLASS, Building, door, ring, wall, window
+from comparing import Facets, as_found, assert_same_paths, check_every_path, placed
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from reference import find_paths
+from rooms import L_SHAPE, ROOMS, SLANTED, SOURCE
+
+import floorplans
+from raytrace import Scene, TraceConfig, Transmitter, trace_paths
+
+EXACT_M = 1e-9
+SNAPPED_M = 1e-7
+"""Where walls meet at points that float64 does not hold, vertices are snapped (`cells.SNAP_M`)."""
+
+RECTANGLE = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_reflections_and_a_diffraction_are_all_found(name: str) -> None:
+    tolerance = SNAPPED_M if name == "slanted room" else EXACT_M
+    receivers = ROOMS[name].random_points(4, seed=11)
+    check_every_path(ROOMS[name], SOURCE, receivers, TraceConfig(3, 1), tolerance)
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_four_reflections_are_all_found(name: str) -> None:
+    tolerance = SNAPPED_M if name == "slanted room" else EXACT_M
+    receivers = ROOMS[name].random_points(3, seed=12)
+    check_every_path(ROOMS[name], SOURCE, receivers, TraceConfig(4, 0), tolerance)
+
+
+@pytest.mark.parametrize("degrees", [17.0, 45.0, 101.3])
+@pytest.mark.parametrize("name", ["door with lintel", "pillar", "corner of 270 degrees"])
+def test_a_building_may_stand_at_any_angle(name: str, degrees: float) -> None:
+    turn = np.radians(degrees)
+    matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    building = ROOMS[name].moved(matrix, np.array([3.3, -20.7]))
+    source, *receivers = building.random_points(4, seed=13)
+    check_every_path(building, tuple(source), np.array(receivers), TraceConfig(2, 1), SNAPPED_M)
+
+
+@st.composite
+def walls(draw: st.DrawFn, outline: tuple) -> tuple:
+    """Draw a wall between two points of a lattice: free, joined, crossing others, any height."""
+    ground = shapely.Polygon(outline)
+    lattice = st.tuples(st.integers(0, 12), st.integers(0, 9))
+    ends = st.tuples(lattice, lattice).map(lambda ab: tuple((x / 2, y / 2) for x, y in ab))
+    a, b = draw(ends.filter(lambda ab: ab[0] != ab[1] and ground.covers(shapely.LineString(ab))))
+    length = float(np.hypot(b[0] - a[0], b[1] - a[1]))
+    near, far = 0.25 * length, 0.625 * length
+    holes = draw(
+        st.sampled_from(
+            [(), (door(near, far),), (window(near, far),), (window(near, far, GLASS),)],
+        )
+    )
+    heights = {} if holes else draw(st.sampled_from([{}, {"high": 1.25}, {"low": 1.75}]))
+    return wall(a, b, *holes, slab=draw(st.integers(0, 2)), **heights)
+
+
+@st.composite
+def buildings(draw: st.DrawFn) -> Building:
+    """Draw a room with one to three walls in it."""
+    outline = draw(st.sampled_from([RECTANGLE, L_SHAPE, SLANTED]))
+    inside = draw(st.lists(walls(outline), min_size=1, max_size=3))
+    return Building(outline, (*ring(outline), *(s for sheets in inside for s in sheets)))
+
+
+@given(building=buildings(), seed=st.integers(0, 1000))
+@settings(max_examples=20)
+def test_random_buildings_hide_no_path(building: Building, seed: int) -> None:
+    source, *receivers = building.random_points(3, seed)
+    check_every_path(building, tuple(source), np.array(receivers), TraceConfig(2, 1), SNAPPED_M)
+
+
+@pytest.mark.parametrize("name", ["scenario1", "scenario2"])
+def test_a_scenario_agrees_at_a_sampled_receiver(name: str) -> None:
+    plan = floorplans.load(name)
+    walls = plan.to_mesh()
+    scene = Scene.from_mesh(walls.mesh, walls.face_material, walls.materials)
+    receivers = np.array([[plan.source[0] + 3.5, plan.source[1] - 1.5, 2.0]])
+    paths = trace_paths(scene, Transmitter(plan.source), receivers, TraceConfig(1, 1))
+    facets = Facets(np.asarray(walls.mesh.triangles), walls.face_material)
+    found = find_paths(facets, placed(plan.source), receivers, 1, 1)
+    assert_same_paths(as_found(paths), found, EXACT_M)

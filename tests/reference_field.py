@@ -1,0 +1,225 @@
+"""The field of a path from its points and materials alone: plain physics, three dimensions.
+
+The field is a complex vector that is turned at every reflection by the slab's dyad and at every
+diffraction by the wedge's, with the textbook's formulas and no tables. Time goes as e^(+j w t).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from reference import DIFFRACTION, REFLECTION, Edge, Facets, Found
+from scipy.special import fresnel
+
+from raytrace import Antenna, Transmitter
+from raytrace.materials import MATERIALS
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+UP = np.array([0.0, 0.0, 1.0])
+
+
+class Slab(NamedTuple):
+    """Reflection and transmission; for `r_te` and `r_tm` of a perfect conductor: -1 and 1."""
+
+    r_te: Complexes
+    r_tm: Complexes
+    t_te: Complexes
+    t_tm: Complexes
+
+
+def slab(permittivity: complex, thickness_m: float, wavelength_m: float, cos_i: Floats) -> Slab:
+    """Plane wave on a slab, as a piece of transmission line between two of free space.
+
+    The line's impedance is 1 / cos for TE and cos for TM; what it reflects is the tangential
+    electric field, whose sign for TM is the opposite of the usual one.
+    """
+    q = np.sqrt(permittivity - (1.0 - cos_i**2))
+    phase = 2.0 * np.pi / wavelength_m * thickness_m * q
+
+    def line(free: Floats, inside: Complexes) -> tuple[Complexes, Complexes]:
+        ratio = inside / free
+        back = 1j * np.tan(phase) * (ratio - 1.0 / ratio)
+        both = 2.0 + 1j * np.tan(phase) * (ratio + 1.0 / ratio)
+        return back / both, 2.0 / (np.cos(phase) * both)
+
+    (r_te, t_te), (r_tm, t_tm) = line(1.0 / cos_i, 1.0 / q), line(cos_i, q / permittivity)
+    return Slab(r_te, -r_tm, t_te, t_tm)
+
+
+def metal_like(cos_i: Floats) -> Slab:
+    """Return a perfect conductor."""
+    one = np.ones_like(cos_i, dtype=np.complex128)
+    return Slab(-one, one, 0.0 * one, 0.0 * one)
+
+
+def transition(x: Floats) -> Complexes:
+    """F(x) of Kouyoumjian and Pathak (1974), eq. 27, by Fresnel's integrals."""
+    sine, cosine = fresnel(np.sqrt(2.0 * x / np.pi))
+    tail = np.sqrt(0.5 * np.pi) * ((0.5 - cosine) - 1j * (0.5 - sine))
+    return 2j * np.sqrt(x) * np.exp(1j * x) * tail
+
+
+def wedge(
+    n: float,
+    angles: tuple[Floats, Floats],
+    sin_beta: Floats,
+    k_distance: Floats,
+    faces: tuple[tuple[Complexes, Complexes], tuple[Complexes, Complexes]],
+) -> tuple[Complexes, Complexes]:
+    """Soft and hard coefficients times sqrt(k): Kouyoumjian and Pathak, eqs. 25-33.
+
+    Parameters
+    ----------
+    n
+        Free angle over pi.
+    angles
+        phi' of the incident and phi of the diffracted ray, from the o-face [rad].
+    sin_beta
+        Sine of the angle with the edge.
+    k_distance
+        k L, L the distance parameter.
+    faces
+        (soft, hard) reflection coefficients of the o-face and of the n-face, -1 and 1 for a
+        perfect conductor.
+    """
+    phi_in, phi = angles
+    terms = []
+    for beta in (phi - phi_in, phi + phi_in):
+        for sign in (1.0, -1.0):
+            turns = np.round((beta + sign * np.pi) / (2.0 * np.pi * n))
+            a = 2.0 * np.cos(n * np.pi * turns - 0.5 * beta) ** 2
+            cotangent = 1.0 / np.tan((np.pi + sign * beta) / (2.0 * n))
+            terms.append(cotangent * transition(k_distance * a))
+    direct = terms[0] + terms[1]
+    size = -np.exp(-0.25j * np.pi) / (2.0 * n * np.sqrt(2.0 * np.pi) * sin_beta)
+    (soft_o, hard_o), (soft_n, hard_n) = faces
+    soft = size * (direct + soft_n * terms[2] + soft_o * terms[3])
+    hard = size * (direct + hard_n * terms[2] + hard_o * terms[3])
+    return soft, hard
+
+
+def unit(vectors: Floats) -> Floats:
+    """Vectors (n, 3) of length 1."""
+    return vectors / np.linalg.norm(vectors, axis=1)[:, None]
+
+
+def dot(a: NDArray, b: NDArray) -> NDArray:
+    """Scalar products (n,) of vectors (n, 3)."""
+    return (a * b).sum(axis=1)
+
+
+@dataclass(frozen=True)
+class Radio:
+    """Slabs by number, transmitter and the receivers' antenna."""
+
+    slabs: Sequence[tuple[str, float]]
+    source: Transmitter
+    receive: Antenna
+
+    def reflect(self, number: int, cos_i: Floats) -> Slab:
+        """Coefficients of a slab by its number."""
+        name, thickness_m = self.slabs[number]
+        permittivity = MATERIALS[name].complex_permittivity(self.source.frequency_hz)
+        return slab(permittivity, thickness_m, self.source.wavelength_m, cos_i)
+
+
+def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
+    """Complex gain (n,) of paths, both antennas included."""
+    n, most = found.kinds.shape
+    rays = np.diff(found.vertices, axis=1)
+    lengths = np.linalg.norm(rays, axis=2)
+    first = unit(rays[:, 0])
+    field = radio.source.antenna.amplitude(first[:, 2])[:, None] * polarisation(first)
+    field = field.astype(np.complex128)
+    spread = 1.0 / lengths.sum(axis=1)
+    for k in range(most):
+        rows = np.flatnonzero(found.kinds[:, k] == REFLECTION)
+        field[rows] = reflected(facets, radio, found.vertices[rows, k : k + 3], field[rows])
+        rows = np.flatnonzero(found.kinds[:, k] == DIFFRACTION)
+        before = lengths[rows, : k + 1].sum(axis=1)
+        behind = lengths[rows, k + 1 :].sum(axis=1)
+        spread[rows] = 1.0 / np.sqrt(before * behind * (before + behind))
+        where = found.vertices[rows, k : k + 3]
+        field[rows] = diffracted(facets, radio, where, (before, behind), field[rows])
+    last = np.count_nonzero(found.kinds, axis=1)
+    arriving = unit(rays[np.arange(n), last])
+    received = dot(field, polarisation(arriving)) * radio.receive.amplitude(-arriving[:, 2])
+    wavelength = radio.source.wavelength_m
+    phase = np.exp(-2j * np.pi / wavelength * lengths.sum(axis=1))
+    return wavelength / (4.0 * np.pi) * spread * phase * received
+
+
+def polarisation(directions: Floats) -> Floats:
+    """Unit vectors (n, 3) across rays, as upright as they can be."""
+    return unit(UP - directions[:, 2, None] * directions)
+
+
+def reflected(facets: Facets, radio: Radio, points: Floats, field: Complexes) -> Complexes:
+    """Field behind a reflection at the middle one of three points (n, 3, 3)."""
+    s_in, s_out = unit(points[:, 1] - points[:, 0]), unit(points[:, 2] - points[:, 1])
+    facet = np.argmax(facets.containing(points[:, 1]), axis=1)
+    normal = facets.normals[facet]
+    across = unit(np.cross(s_in, normal))
+    result = np.empty_like(field)
+    for number in np.unique(facets.slab[facet]):
+        i = facets.slab[facet] == number
+        c = radio.reflect(number, np.abs(dot(s_in[i], normal[i])))
+        te = c.r_te * dot(field[i], across[i])
+        tm = c.r_tm * dot(field[i], np.cross(across[i], s_in[i]))
+        result[i] = te[:, None] * across[i] + tm[:, None] * np.cross(across[i], s_out[i])
+    return result
+
+
+def diffracted(
+    facets: Facets,
+    radio: Radio,
+    points: Floats,
+    distances: tuple[Floats, Floats],
+    field: Complexes,
+) -> Complexes:
+    """Field behind an edge at the middle one of three points, without its spreading."""
+    before, behind = distances
+    s_in, s_out = unit(points[:, 1] - points[:, 0]), unit(points[:, 2] - points[:, 1])
+    result = np.zeros_like(field)
+    for edge in facets.edges:
+        i = np.flatnonzero(_crosses(edge, points))
+        if len(i):
+            length = before[i] * behind[i] / (before[i] + behind[i])
+            result[i] = _over(edge, radio, (s_in[i], s_out[i]), length, field[i])
+    return result
+
+
+def _crosses(edge: Edge, points: Floats) -> NDArray[np.bool_]:
+    """Whether paths meet an edge, and on which side of its faces they come and go."""
+    u = (points[:, 1] - edge.start) @ edge.tangent
+    off = np.linalg.norm(points[:, 1] - edge.start - u[:, None] * edge.tangent, axis=1)
+    on = (off < 1e-6) & (u > 0.0) & (u < edge.length)
+    for end in (0, 2):
+        on &= edge.angles(points[:, end] - points[:, 1]) <= edge.angle
+    return on
+
+
+def _over(
+    edge: Edge, radio: Radio, rays: tuple[Floats, Floats], length: Floats, field: Complexes
+) -> Complexes:
+    s_in, s_out = rays
+    phi_in, phi = edge.angles(-s_in), edge.angles(s_out)
+    sin_beta = np.linalg.norm(np.cross(edge.tangent, s_out), axis=1)
+    n = edge.angle / np.pi
+    faces = []
+    for number, start in ((edge.o_slab, 0.0), (edge.n_slab, edge.angle)):
+        sine = np.sqrt(np.abs(np.sin(phi - start) * np.sin(phi_in - start))) * sin_beta
+        c = radio.reflect(number, np.minimum(sine, 1.0))
+        faces.append((c.r_te, c.r_tm))
+    k = 2.0 * np.pi / radio.source.wavelength_m
+    k_distance = k * length * sin_beta**2
+    soft, hard = wedge(n, (phi_in, phi), sin_beta, k_distance, (faces[0], faces[1]))
+    round_in = -unit(np.cross(edge.tangent, s_in))
+    round_out = unit(np.cross(edge.tangent, s_out))
+    along_in, along_out = np.cross(round_in, s_in), np.cross(round_out, s_out)
+    along = -soft * dot(field, along_in) / np.sqrt(k)
+    across = -hard * dot(field, round_in) / np.sqrt(k)
+    return along[:, None] * along_out + across[:, None] * round_out
