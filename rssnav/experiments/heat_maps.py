@@ -46,7 +46,7 @@ def draw(data: PaperData) -> Figure:
         draw_map(panels[k], scenario, norm)
         label_panel(panels[k], "ab"[k], f"Scenario {number}")
         left_in += width_in + _GAP_IN
-    _draw_keys(figure, panels[0], norm, data)
+    _draw_keys(figure, panels[0], norm)
     return figure
 
 
@@ -63,7 +63,7 @@ def _axes(figure: Figure, left: float, top: float, width: float, height: float) 
     )
 
 
-def _draw_keys(figure: Figure, ax: Axes, norm: Normalize, data: PaperData) -> None:
+def _draw_keys(figure: Figure, ax: Axes, norm: Normalize) -> None:
     """Draw colour bar and legend below the first map."""
     width_in, height_in = figure.get_size_inches()
     position = ax.get_position()
@@ -73,8 +73,7 @@ def _draw_keys(figure: Figure, ax: Axes, norm: Normalize, data: PaperData) -> No
         ScalarMappable(norm, MAP_COLOURS), cax=bar_axes, orientation="horizontal", extend="min"
     )
     bar.set_label("RSS [dBm]")
-    plan = next(iter(data.scenarios.values())).plan
-    marks = [draw_source(ax, plan), draw_start(ax, plan)]
+    marks, _ = ax.get_legend_handles_labels()
     bar_axes.legend(handles=marks, loc="upper center", bbox_to_anchor=(0.5, -2.6), ncols=2)
 
 

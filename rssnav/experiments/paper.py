@@ -75,9 +75,23 @@ class _Run:
     progress: Progress
     notice: Notice
 
-    def counter(self, stage: str, part: int = 0, parts: int = 1) -> Callable[[int, int], None]:
+    def counter(self, stage: str, part: int, parts: int) -> Callable[[int, int], None]:
         """Return the progress of one of the equally long parts of a stage."""
         return lambda done, size: self.progress(stage, part * size + done, parts * size)
+
+
+@dataclass
+class _MapCounter:
+    """Progress of one map, whose length only its tracer knows."""
+
+    progress: Progress
+    stage: str
+    total: int = 1
+
+    def __call__(self, done: int, total: int) -> None:
+        """Report progress."""
+        self.total = total
+        self.progress(self.stage, done, total)
 
 
 def run_paper(
@@ -190,16 +204,16 @@ def _make_maps(run: _Run, plans: Sequence[str | Path]) -> dict[int, Scenario]:
     scenarios: dict[int, Scenario] = {}
     with run.record.stage("maps"):
         for number, plan in enumerate(loaded, start=1):
-            stage = f"map of {plan.name}"
-            run.progress(stage, 0, 1)
+            counter = _MapCounter(run.progress, f"map of {plan.name}")
+            counter(0, 1)
             radio_map = make_map(
                 plan,
                 run.out / "maps" / f"{plan.name}.h5",
                 threads=run.threads,
-                progress=run.counter(stage),
+                progress=counter,
                 notice=run.notice,
             )
-            run.progress(stage, 1, 1)
+            counter(counter.total, counter.total)
             scenarios[number] = Scenario(plan, radio_map)
     return scenarios
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
 
 from rssnav.experiments.data import AGENT_LABELS, AgentName, PaperData
 from rssnav.experiments.heat_maps import colour_scale, draw_map
@@ -14,8 +16,6 @@ from rssnav.figures import (
     PAGE_IN,
     draw_colour_bar,
     draw_flight,
-    draw_source,
-    draw_start,
     label_panel,
     new_figure,
     styled,
@@ -46,7 +46,7 @@ def draw(data: PaperData) -> Figure:
             if column:
                 ax.tick_params(labelleft=False)
                 ax.set_ylabel("")
-    _legend(figure, panels[0, 0], data)
+    _legend(figure, panels.T.ravel().tolist())
     draw_colour_bar(figure, panels.ravel().tolist(), norm, "RSS [dBm]", alpha=_PALE)
     return figure
 
@@ -55,12 +55,20 @@ def _draw_median_flight(ax: Axes, data: PaperData, scenario: int, agent: AgentNa
     """Draw the median run's flight and the target zone."""
     result = data.result(scenario, agent, SPEED)
     x, y, _ = data.scenarios[scenario].plan.source
-    zone = Circle((x, y), GOAL_DISTANCE_M, facecolor="none", edgecolor=INK, linestyle=":", lw=0.9)
-    zone.set_gid("target zone")
-    ax.add_patch(zone)
+    angle = np.linspace(0.0, 2.0 * np.pi, 73)
+    ax.plot(
+        x + GOAL_DISTANCE_M * np.cos(angle),
+        y + GOAL_DISTANCE_M * np.sin(angle),
+        ":",
+        color=INK,
+        linewidth=0.9,
+        label=f"target zone, $D$ < {GOAL_DISTANCE_M:g} m",
+        gid="target zone",
+    )
     median = median_run(result)
     if median is not None:
-        draw_flight(ax, result.trajectory_m(median), agent)
+        line = draw_flight(ax, result.trajectory_m(median), agent)
+        line.set_label(f"{AGENT_LABELS[agent]} agent")
 
 
 def median_run(result: TrainingResult) -> int | None:
@@ -72,14 +80,13 @@ def median_run(result: TrainingResult) -> int | None:
     return int(by_length[(arrived.size - 1) // 2])
 
 
-def _legend(figure: Figure, ax: Axes, data: PaperData) -> None:
-    plan = next(iter(data.scenarios.values())).plan
-    flights = [draw_flight(ax, np.full((1, 2), np.nan), agent) for agent in _ORDER]
-    for line, agent in zip(flights, _ORDER, strict=True):
-        line.set_label(f"{AGENT_LABELS[agent]} agent")
-    zone = ax.plot([], [], linestyle=":", color=INK, lw=0.9, label="target zone, $D$ < 2 m")
-    marks = [draw_source(ax, plan), draw_start(ax, plan)]
-    figure.legend(handles=[*flights, *marks, *zone], loc="outside lower center", ncols=5)
+def _legend(figure: Figure, panels: Sequence[Axes]) -> None:
+    """Draw one legend of all that the panels show."""
+    labelled: dict[str, Artist] = {}
+    for ax in panels:
+        handles, labels = ax.get_legend_handles_labels()
+        labelled |= dict(zip(labels, handles, strict=True))
+    figure.legend(handles=list(labelled.values()), loc="outside lower center", ncols=len(labelled))
 
 
 def caption(data: PaperData) -> str:

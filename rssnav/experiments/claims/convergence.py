@@ -24,8 +24,8 @@ def _falls_with_speed(measure: Measure) -> Claim:
     return Claim(
         f"{measure.name.replace('_', '-')}-falls",
         f"Convergence time falls with speed for both agents (read as {measure.title}).",
-        f"{measure.title[0].upper()}{measure.title[1:]} to convergence, over the runs that converge. Reproduced "
-        "where each speed takes less than the one before.",
+        f"Mean {measure.title} to convergence, over the runs that converge. Reproduced where each "
+        "speed takes less than the one before.",
         f"{measure.heading}, slower minus faster",
         lambda data: _falls(data, measure),
     )
