@@ -63,7 +63,7 @@ def enlarged(rows: Rows) -> Rows:
     return more
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def copy_row(rows: NDArray[Any], to: int, source: int) -> None:
     """rows[to] = rows[source], much faster to compile."""
     for k in range(rows.shape[1]):
@@ -101,27 +101,44 @@ def grow_tree(
     i = 0
     while i < n:
         cell = link[i, CELL]
-        for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
-            lit, window = narrowed(view, link[i, EDGE], beam[i], e)
-            if not lit:
-                continue
-            if n + 2 > len(link):
-                link, beam = enlarged(link), enlarged(beam)
-            needed = max(link[i, BOUNCES], bounces[e, 0])
-            if view.beyond[e] >= 0 and link[i, ORDER] + needed <= max_order:
-                pass_through(view, link, beam, i, n, e, window)
-                link[n, BOUNCES] = needed
-                n += 1
-            needed = max(link[i, BOUNCES], bounces[e, 1])
-            if view.profile[e] >= 0 and link[i, ORDER] + 1 + needed <= max_order:
-                reflect(view, link, beam, i, n, e, window)
-                link[n, BOUNCES] = needed
-                n += 1
+        most = 2 * (view.cell_edges[cell + 1] - view.cell_edges[cell])
+        while n + most > len(link):
+            link, beam = enlarged(link), enlarged(beam)
+        n = split(view, bounces, link, beam, i, n, max_order)
         i += 1
     return Tree(link[:n].copy(), beam[:n].copy())
 
 
-@jit(allocates=False)
+@jit(inner=True)
+def split(
+    view: PlanView,
+    bounces: Ints,
+    link: NDArray[np.int32],
+    beam: Floats,
+    i: int,
+    n: int,
+    max_order: int,
+) -> int:
+    """Write what becomes of beam i at the edges of its cell, from row n on; return the next row."""
+    cell = link[i, CELL]
+    for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
+        lit, window = narrowed(view, link[i, EDGE], beam[i], e)
+        if not lit:
+            continue
+        needed = max(link[i, BOUNCES], bounces[e, 0])
+        if view.beyond[e] >= 0 and link[i, ORDER] + needed <= max_order:
+            pass_through(view, link, beam, i, n, e, window)
+            link[n, BOUNCES] = needed
+            n += 1
+        needed = max(link[i, BOUNCES], bounces[e, 1])
+        if view.profile[e] >= 0 and link[i, ORDER] + 1 + needed <= max_order:
+            reflect(view, link, beam, i, n, e, window)
+            link[n, BOUNCES] = needed
+            n += 1
+    return n
+
+
+@jit(inner=True)
 def narrowed(
     view: PlanView, entry: int, beam: Floats, e: int
 ) -> tuple[bool, tuple[float, float, float, float]]:
@@ -141,7 +158,7 @@ def narrowed(
     return lit, (rx, ry, lx, ly)
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def pass_through(
     view: PlanView,
     link: NDArray[np.int32],
@@ -161,7 +178,7 @@ def pass_through(
     beam[n, RIGHT_X], beam[n, RIGHT_Y], beam[n, LEFT_X], beam[n, LEFT_Y] = window
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def reflect(
     view: PlanView,
     link: NDArray[np.int32],
@@ -184,7 +201,7 @@ def reflect(
     beam[n, LEFT_X], beam[n, LEFT_Y] = mirrored(rx, ry, line)
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def is_lit(tree: Tree, i: int, x: float, y: float) -> bool:
     """Whether a point of beam i's cell lies within its window."""
     if tree.link[i, EDGE] < 0:
@@ -273,7 +290,7 @@ def hit_partial_walls(view: PlanView, tree: Tree) -> tuple[NDArray[np.int32], Fl
     return hits[:n].copy(), stretch[:n].copy()
 
 
-@jit(inline="always")
+@jit(inline=True)
 def fraction(view: PlanView, beam: Floats, e: int, x: float, y: float) -> float:
     """Where the ray from a beam's image through (x, y) meets edge e: 0 its start, 1 its end."""
     x1, y1, x2, y2 = view.ends[e, 0], view.ends[e, 1], view.ends[e, 2], view.ends[e, 3]

@@ -40,25 +40,31 @@ _use_own_cache()
 
 
 def jit(
-    *, inline: str = "never", fast: bool = False, allocates: bool = True
+    *, fast: bool = False, allocates: bool = True, inner: bool = False, inline: bool = False
 ) -> Callable[[Function], Function]:
     """Compile a kernel: cached, without the interpreter lock, divisions as in C.
 
     Parameters
     ----------
-    inline
-        "always" for the small functions of inner loops.
     fast
         Allow `FAST` in place of strict IEEE arithmetic.
     allocates
         Whether it makes arrays. One that does not is spared the counting of references, which
         otherwise takes most of the time of a loop that passes arrays in tuples.
+    inner
+        Whether only kernels call it, which saves compiling a way in from Python. It must not
+        make arrays.
+    inline
+        Whether it is moreover one of the small functions of inner loops, and always inlined.
     """
+    inner = inner or inline
     return numba.njit(  # pyright: ignore[reportCallIssue]
         cache=True,
         nogil=True,
-        inline=inline,
         error_model="numpy",
         fastmath=FAST if fast else False,
-        _nrt=allocates,
+        forceinline=inline,
+        no_cpython_wrapper=inner,
+        no_cfunc_wrapper=True,
+        _nrt=allocates and not inner,
     )

@@ -76,7 +76,7 @@ class Ray(NamedTuple):
     second_te: complex
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def slab_reflection(slabs: Floats, slab: int, cosine: float) -> tuple[complex, complex]:
     """R_tm and (R_te + R_tm) / sin^2 of a slab, by linear interpolation."""
     steps = slabs.shape[1] - 2
@@ -90,14 +90,14 @@ def slab_reflection(slabs: Floats, slab: int, cosine: float) -> tuple[complex, c
     )
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def both_reflections(slabs: Floats, slab: int, cosine: float) -> tuple[complex, complex]:
     """R_tm and R_te of a slab."""
     tm, mix = slab_reflection(slabs, slab, cosine)
     return tm, mix * (1.0 - cosine * cosine) - tm
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def interpolated(table: Floats, sine: float) -> float:
     """Entry of a table over -1 to 1."""
     t = (sine + 1.0) * (0.5 * (len(table) - 2))
@@ -105,7 +105,7 @@ def interpolated(table: Floats, sine: float) -> float:
     return table[k] + (table[k + 1] - table[k]) * (t - k)
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def phasor(cis: Floats, turns: float) -> complex:
     """exp(-2 pi j turns), to 1e-12: a table and a short Taylor series."""
     steps = len(cis) - 1
@@ -119,7 +119,7 @@ def phasor(cis: Floats, turns: float) -> complex:
     return complex(c * cosine - s * sine, -(s * cosine + c * sine))
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def new_ray(radio: Radio, slope: float, bounces: int) -> Ray:
     """Ray of a given slope; floor and ceiling are looked up only if it meets them."""
     cos_el = 1.0 / math.sqrt(1.0 + slope * slope)
@@ -134,7 +134,7 @@ def new_ray(radio: Radio, slope: float, bounces: int) -> Ray:
     return Ray(slope, cos_el, sin_el, tm, te, tm2, te2)
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def bounced(
     ray: Ray, storeys: float, upright: complex, level: complex, done: int
 ) -> tuple[complex, complex, int]:
@@ -149,7 +149,7 @@ def bounced(
     return upright, level, done
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def carried(
     view: PlanView,
     radio: Radio,
@@ -201,7 +201,7 @@ def carried(
     return bounced(ray, (z_root + ray.slope * length) * per_height, upright, level, done)
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def antenna_gain(radio: Radio, ray: Ray, done: int) -> float:
     """Amplitude of both antennas on a ray that leaves and arrives at the same elevation."""
     arriving = ray.sin_el if done & 1 else -ray.sin_el

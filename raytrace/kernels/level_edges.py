@@ -179,7 +179,7 @@ def sum_level_edge(
                     recorded(record, hit, p, (a, b), gain)
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def unfold_leg(
     view: PlanView,
     link: NDArray[np.int32],
@@ -192,7 +192,7 @@ def unfold_leg(
     return unfold(view, link, images, i, target, leg)
 
 
-@jit(fast=True, allocates=False)
+@jit(fast=True, inner=True)
 def carry(
     view: PlanView,
     radio: Radio,
@@ -207,13 +207,13 @@ def carry(
     return carried(view, radio, leg, n, length, ray, z_root, field)
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def fits(view: PlanView, leg: Leg, n: int, z_root: float, slope: float, height: float) -> bool:
     """`unfolding.heights_fit`, compiled apart."""
     return heights_fit(view, leg, n, z_root, slope, height)
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def unfold_over_rim(
     trace: Trace,
     rim: Rim,
@@ -241,7 +241,7 @@ def unfold_over_rim(
     return leg_in, leg_out
 
 
-@jit(fast=True, allocates=False)
+@jit(fast=True, inner=True)
 def rim_gain(
     trace: Trace,
     rim: Rim,
@@ -308,14 +308,14 @@ def rim_gain(
     return True, upright * turns * common_factor(2.0, radio.wavelength) * (size / sin_beta)
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def turned_to_edge(frame: Floats, ux: float, uy: float, sin_el: float) -> tuple[float, float]:
     """Components of tau and psi along a level edge (docs/theory.md, eqs. 23-24)."""
     tx, ty = frame[0], frame[1]
     return -sin_el * (ux * tx + uy * ty), ux * ty - uy * tx
 
 
-@jit(fast=True, allocates=False)
+@jit(fast=True, inner=True)
 def rim_diffraction(
     radio: Radio, rim: Rim, path: RimPath, h: tuple[float, float], sin_beta: float, work: Work
 ) -> tuple[complex, complex]:

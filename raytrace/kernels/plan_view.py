@@ -56,20 +56,20 @@ class PlanView(NamedTuple):
     bin_material: Ints
 
 
-@jit(inline="always")
+@jit(inline=True)
 def cross(ax: float, ay: float, bx: float, by: float) -> float:
     """Third component of a x b; positive where b lies to the left of a."""
     return ax * by - ay * bx
 
 
-@jit(inline="always")
+@jit(inline=True)
 def mirrored(x: float, y: float, line: Floats) -> tuple[float, float]:
     """Image of a point in a line (n_x, n_y, d)."""
     t = 2.0 * (line[0] * x + line[1] * y - line[2])
     return x - t * line[0], y - t * line[1]
 
 
-@jit(inline="always")
+@jit(inline=True)
 def folded(z: float, height: float) -> float:
     """Height in the building of an unfolded height: reflections at floor and ceiling undone."""
     storeys = math.floor(z / height)
@@ -79,7 +79,7 @@ def folded(z: float, height: float) -> float:
     return rest
 
 
-@jit(inline="always")
+@jit(inline=True)
 def material_at(view: PlanView, profile: int, z: float) -> int:
     """Material of a profile at height z, -1 where it is open."""
     k = int(view.profile_bins[profile])

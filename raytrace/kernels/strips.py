@@ -67,7 +67,7 @@ def edge_frame(view: PlanView, e: int) -> Floats:
     return frame
 
 
-@jit(inline="always")
+@jit(inline=True)
 def in_frame(frame: Floats, x: float, y: float) -> tuple[float, float]:
     """(x, h) of a point."""
     return (
@@ -76,14 +76,14 @@ def in_frame(frame: Floats, x: float, y: float) -> tuple[float, float]:
     )
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def copy_rays(rays: Floats, start: int, n: int, out: Floats, to: int) -> None:
     """out[to:to + n] = rays[start:start + n], much faster to compile."""
     for k in range(n):
         out[to + k, 0], out[to + k, 1] = rays[start + k, 0], rays[start + k, 1]
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def clipped(rays: Floats, n: int, x: float, h: float, sign: float, out: Floats) -> int:
     """Keep the rays with sign (x - u - m h) >= 0; write them to `out`, return how many corners."""
     kept = 0
@@ -102,7 +102,7 @@ def clipped(rays: Floats, n: int, x: float, h: float, sign: float, out: Floats) 
     return kept
 
 
-@jit(inline="always")
+@jit(inline=True)
 def is_sliver(rays: Floats, n: int) -> bool:
     """Whether a polygon of rays is too thin to be followed."""
     if n < 3:
@@ -116,7 +116,7 @@ def is_sliver(rays: Floats, n: int) -> bool:
     return abs(area) < 1e-13 or high - low < SLIVER_M
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, out: Floats) -> int:
     """Clip beam i to the part that meets edge e; corners to `out`, return how many, 0 if none."""
     frame = tree.frame[i]
@@ -135,7 +135,7 @@ def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, 
     return 0 if is_sliver(out, n) else n
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def mirror_frame(frame: Floats, line: Floats) -> None:
     """Change a frame to that of the beam mirrored at a line."""
     nx, ny, d = line[0], line[1], line[2]
@@ -147,7 +147,7 @@ def mirror_frame(frame: Floats, line: Floats) -> None:
     frame[6] = -frame[6]
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def write_box(rays: Floats, length: float) -> None:
     """All rays that leave an edge of that length."""
     rays[0, 0], rays[1, 0], rays[2, 0], rays[3, 0] = 0.0, length, length, 0.0
@@ -155,7 +155,7 @@ def write_box(rays: Floats, length: float) -> None:
     rays[2, 1] = rays[3, 1] = STEEPEST
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def follow(
     view: PlanView, link: NDArray[np.int32], frame: Floats, i: int, n: int, e: int, way: int
 ) -> None:
@@ -168,6 +168,41 @@ def follow(
         link[n, CELL] = view.beyond[e]
     else:
         mirror_frame(frame[n], view.plane[e])
+
+
+@jit(inner=True)
+def split_strip(
+    view: PlanView,
+    bounces: Ints,
+    tree: StripTree,
+    i: int,
+    n: int,
+    max_order: int,
+    room: tuple[Floats, Floats],
+) -> int:
+    """Write what becomes of beam i at the edges of its cell, from row n on; return the next row."""
+    work, out = room
+    link, first = tree.link, tree.first
+    cell = link[i, CELL]
+    for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
+        if view.line[e] == view.line[link[i, EDGE]]:
+            continue
+        corners = through_edge(view, tree, i, e, work, out)
+        if corners == 0:
+            continue
+        for way in range(2):
+            needed = max(link[i, BOUNCES], bounces[e, way])
+            possible = view.beyond[e] >= 0 if way == 0 else view.profile[e] >= 0
+            if not possible or link[i, ORDER] + way + needed > max_order:
+                continue
+            copy_row(link, n, i)
+            copy_row(tree.frame, n, i)
+            link[n, BOUNCES] = needed
+            follow(view, link, tree.frame, i, n, e, way)
+            copy_rays(out, 0, corners, tree.rays, first[n])
+            first[n + 1] = first[n] + corners
+            n += 1
+    return n
 
 
 @jit()
@@ -199,30 +234,16 @@ def grow_strips(
     i = 0
     while i < n:
         cell = link[i, CELL]
+        most = 2 * (view.cell_edges[cell + 1] - view.cell_edges[cell])
+        corners = first[i + 1, 0] - first[i, 0] + 2
+        while n + most >= len(link):
+            link, frame, first = enlarged(link), enlarged(frame), enlarged(first)
+        while first[n, 0] + most * corners > len(rays):
+            rays = enlarged(rays)
+        while corners > len(out):
+            work, out = enlarged(work), enlarged(out)
         tree = StripTree(link, frame, first[:, 0], rays)
-        for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
-            if view.line[e] == view.line[link[i, EDGE]]:
-                continue
-            corners = through_edge(view, tree, i, e, work, out)
-            if corners == 0:
-                continue
-            for way in range(2):
-                needed = max(link[i, BOUNCES], bounces[e, way])
-                possible = view.beyond[e] >= 0 if way == 0 else view.profile[e] >= 0
-                if not possible or link[i, ORDER] + way + needed > max_order:
-                    continue
-                while n + 2 > len(link):
-                    link, frame, first = enlarged(link), enlarged(frame), enlarged(first)
-                while first[n, 0] + corners > len(rays):
-                    rays = enlarged(rays)
-                copy_row(link, n, i)
-                copy_row(frame, n, i)
-                link[n, BOUNCES] = needed
-                follow(view, link, frame, i, n, e, way)
-                copy_rays(out, 0, corners, rays, first[n, 0])
-                first[n + 1, 0] = first[n, 0] + corners
-                n += 1
-                tree = StripTree(link, frame, first[:, 0], rays)
+        n = split_strip(view, bounces, tree, i, n, max_order, (work, out))
         i += 1
     return StripTree(
         link[:n].copy(), frame[:n].copy(), first[: n + 1, 0].copy(), rays[: first[n, 0]].copy()
@@ -262,7 +283,7 @@ def hit_from_strip(tree: StripTree, targets: Targets) -> tuple[NDArray[np.int32]
     return hits[:n].copy(), seen[:n].copy()
 
 
-@jit(allocates=False)
+@jit(inner=True)
 def stretch_through(rays: Floats, x: float, h: float) -> tuple[float, float]:
     """Smallest and largest u of the rays of a polygon through (x, h); empty if low > high."""
     low, high = 1e300, -1e300

@@ -97,7 +97,7 @@ def new_record(n_paths: int) -> Record:
     )
 
 
-@jit(inline="always")
+@jit(inline=True)
 def recorded(record: Record, hit: int, leg: int, images: tuple[int, int], gain: complex) -> None:
     """Write a path down if there is room."""
     k = record.used[0]

@@ -59,7 +59,7 @@ def most_items(link: NDArray[np.int32]) -> int:
     return most
 
 
-@jit(inline="always")
+@jit(inline=True)
 def unfold(
     view: PlanView,
     link: NDArray[np.int32],
@@ -117,7 +117,7 @@ def unfold(
     return n, length, (x - images[i, IMAGE_X]) / rest, (y - images[i, IMAGE_Y]) / rest
 
 
-@jit(inline="always")
+@jit(inline=True)
 def mark_of(view: PlanView, e: int, passed: bool) -> tuple[int, int]:
     """Kind of an item and what it stands for."""
     profile = int(view.profile[e])
@@ -128,7 +128,7 @@ def mark_of(view: PlanView, e: int, passed: bool) -> tuple[int, int]:
     return REFLECT_PARTIAL, profile
 
 
-@jit(inline="always")
+@jit(inline=True)
 def heights_fit(
     view: PlanView, leg: Leg, n: int, z_root: float, slope: float, height: float
 ) -> bool:
@@ -153,7 +153,7 @@ def heights_fit(
     return True
 
 
-@jit(inline="always")
+@jit(inline=True)
 def is_constrained(leg: Leg, n: int) -> bool:
     """Whether a leg meets a partial wall, so that its heights matter."""
     met = False

@@ -80,14 +80,14 @@ class LegsIn(NamedTuple):
     marks: Ints
 
 
-@jit(inline="always")
+@jit(inline=True)
 def from_face(azimuth: float, o_face: float) -> float:
     """Angle of a direction from the o-face, 0 to 2 pi."""
     phi = azimuth - o_face
     return phi - 2.0 * math.pi * math.floor(phi / (2.0 * math.pi))
 
 
-@jit(inline="always")
+@jit(inline=True)
 def write_angles(phi: float, n: float, row: Floats) -> None:
     """Functions of an angle from the o-face that the wedge terms are made of."""
     row[COSINE_HALF], row[SINE_HALF] = math.cos(phi / 2.0), math.sin(phi / 2.0)
@@ -164,7 +164,7 @@ class Pair(NamedTuple):
     terms: WedgeTerms
 
 
-@jit(inline="always")
+@jit(inline=True)
 def pair_fits(trace: Trace, edge: Edge, pair: Pair, slope: float) -> bool:
     """Whether the edge stands where the path meets it, and the walls fit the path's heights."""
     height = trace.radio.height
@@ -179,7 +179,7 @@ def pair_fits(trace: Trace, edge: Edge, pair: Pair, slope: float) -> bool:
     return fits
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def pair_gain(trace: Trace, edge: Edge, pair: Pair, slope: float, bounces: int) -> complex:
     """Gain of a path, without the wedge's common factor (docs/theory.md, eqs. 16-20).
 

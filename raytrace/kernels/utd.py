@@ -89,7 +89,7 @@ def new_wedge(n: float, o_slab: int, n_slab: int) -> Wedge:
     )
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def transition_ratio(table: Floats, s: float) -> complex:
     """F(s^2) / s."""
     if s >= TRANSITION_MAX:
@@ -102,7 +102,7 @@ def transition_ratio(table: Floats, s: float) -> complex:
     return complex(table[k, 0] * v + table[k + 1, 0] * w, table[k, 1] * v + table[k + 1, 1] * w)
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def cotangent(sine: float, cosine: float) -> float:
     """Cosine / sine, finite at a shadow boundary, where F makes up for it."""
     if abs(sine) < 1e-13:
@@ -110,7 +110,7 @@ def cotangent(sine: float, cosine: float) -> float:
     return cosine / sine
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def detour(wedge: Wedge, beta: float, cos_half: float, sin_half: float, sign: float) -> float:
     """|cos((2 pi n N - beta) / 2)|, N = -1, 0, 1 nearest to (sign pi + beta) / (2 pi n)."""
     nearest = (sign * math.pi + beta) / (2.0 * math.pi * wedge.n)
@@ -121,7 +121,7 @@ def detour(wedge: Wedge, beta: float, cos_half: float, sin_half: float, sign: fl
     return abs(cos_half)
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def wedge_terms(
     wedge: Wedge, phi: float, at: Floats, phi_source: float, source: Floats
 ) -> WedgeTerms:
@@ -163,7 +163,7 @@ def wedge_terms(
     return WedgeTerms(cotangents, detours, cos_minus, cos_plus, o_cosine, n_cosine)
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def diffraction(
     radio: Radio, wedge: Wedge, terms: WedgeTerms, spread: float, sin_beta: float
 ) -> tuple[complex, complex]:
@@ -193,20 +193,20 @@ def diffraction(
     return incident + n_te * at_n + o_te * at_o, incident + n_tm * at_n + o_tm * at_o
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def wedge_term(table: Floats, spread: float, cot: float, bend: float) -> complex:
     """Cot * F, one of the four terms (docs/theory.md, eq. 17)."""
     s = spread * bend
     return transition_ratio(table, s) * (cot * s)
 
 
-@jit(inline="always", fast=True)
+@jit(inline=True, fast=True)
 def half_plane_term(table: Floats, spread: float, cosine: float) -> complex:
     """2 F / cosine, two of the four terms of a half plane."""
     return transition_ratio(table, spread * abs(cosine)) * math.copysign(2.0 * spread, cosine)
 
 
-@jit(inline="always")
+@jit(inline=True)
 def common_factor(n: float, wavelength: float) -> complex:
     """-exp(-j pi / 4) / (2 n sqrt(2 pi k)); the division by sin beta is the caller's."""
     size = math.sqrt(wavelength) / (4.0 * math.pi * n)
