@@ -119,7 +119,7 @@ def slab_coefficients(
         taken as its surface; transmission includes the slab's phase.
     """
     cos_i = np.maximum(np.asarray(cos_incidence, dtype=np.float64), 1e-12)
-    inner: NDArray[np.complex128] = np.sqrt(complex(permittivity) - (1.0 - cos_i**2))
+    inner: NDArray[np.complex128] = np.sqrt(complex(permittivity) - 1.0 + cos_i**2)
     half_te: NDArray[np.complex128] = (cos_i - inner) / (cos_i + inner)
     half_tm: NDArray[np.complex128] = (permittivity * cos_i - inner) / (
         permittivity * cos_i + inner
