@@ -58,11 +58,22 @@ def _own_cache() -> Generator[None, None, None]:
         settings.CACHE_DIR = before
 
 
-def jit(*, inline: Literal["never", "always"] = "never") -> Callable[[Function], Function]:
-    """Compile a loop, or with ``inline="always"`` a part of one: cached, free of the GIL."""
+def jit(
+    *, inline: Literal["never", "always"] = "never", allocates: bool = False
+) -> Callable[[Function], Function]:
+    """Compile a loop or a part of one: cached, without the interpreter lock.
+
+    Parameters
+    ----------
+    inline
+        "always" for the small parts of inner loops.
+    allocates
+        Whether it makes arrays. One that does not is spared the counting of references, which
+        otherwise takes most of the time of a loop that hands arrays in tuples to its parts.
+    """
 
     def compiled(function: Function) -> Function:
-        compile_it: Any = numba.njit(cache=True, nogil=True, inline=inline)
+        compile_it: Any = numba.njit(cache=True, nogil=True, inline=inline, _nrt=allocates)
         with _own_cache():
             return compile_it(function)
 

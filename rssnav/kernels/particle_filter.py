@@ -87,11 +87,23 @@ def weigh(belief: Belief, model: Model, x: float, y: float, reading_dbm: float) 
         expected_dbm = particle[POWER] - 10.0 * particle[EXPONENT] * math.log10(distance_m)
         misfit = (reading_dbm - expected_dbm) / model.sigma_db
         weights[k] *= math.exp(-0.5 * misfit * misfit)
-    total = weights.sum()
+    total = 0.0
+    for weight in weights:
+        total += weight
     if total <= 0.0:
         return False
-    weights /= total
+    for k in range(weights.size):
+        weights[k] /= total
     return True
+
+
+@jit()
+def _concentration(weights: NDArray[np.float64]) -> float:
+    """Number of particles over the effective number that the weights amount to."""
+    squares = 0.0
+    for weight in weights:
+        squares += weight * weight
+    return squares * weights.size
 
 
 @jit()
@@ -173,7 +185,7 @@ def track(
         x, y = chart.position[state]
         if not weigh(belief, model, x, y, reading_dbm):
             _begin(belief, model, generator)
-        if (belief.weights * belief.weights).sum() * belief.weights.size > 2.0:
+        if _concentration(belief.weights) > 2.0:
             resample(belief, model, generator)
         if since_drawn >= model.steps_to_draw or chart.hops[state] == 0:
             count_hops(moves, chart, _drawn_place(belief, chart, generator))

@@ -137,7 +137,7 @@ def _climb(
     return level_dbm, -1
 
 
-@jit()
+@jit(allocates=True)
 def ascend(
     moves: Moves, receiver: Receiver, flight: Flight, readings: int, escape_steps: int
 ) -> bool:

@@ -62,7 +62,7 @@ class Book(NamedTuple):
     fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
 
 
-@jit()
+@jit(inline="always")
 def reading_in(sensor: Sensor, book: Book, generator: NDArray[np.uint64], cell: int) -> float:
     """RSS read in a cell [dBm]: a first-order autoregressive fluctuation on the map's value."""
     return fluctuating(
@@ -76,7 +76,7 @@ def _bin(sensor: Sensor, book: Book, reading: float) -> int:
     return min(max(position, 0), book.label_of_bin.size - 1)
 
 
-@jit()
+@jit(inline="always")
 def _known_state(sensor: Sensor, book: Book, reading: float) -> int:
     """Nearest known state within Th of a reading, the older of two as near; -1 if there is none."""
     centre = _bin(sensor, book, reading)
@@ -92,7 +92,7 @@ def _known_state(sensor: Sensor, book: Book, reading: float) -> int:
     return label
 
 
-@jit()
+@jit(inline="always")
 def label_of(
     sensor: Sensor, book: Book, counters: NDArray[np.int64], cell: int, reading: float
 ) -> int:

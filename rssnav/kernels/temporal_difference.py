@@ -35,7 +35,7 @@ def _score(q: NDArray[np.float64], entry: int, rule: int) -> float:
     return q[entry] + q[entry + q.size // 2] if rule == DOUBLE_Q else q[entry]
 
 
-@jit()
+@jit(inline="always")
 def _greedy(q: NDArray[np.float64], row: int, rule: int, ties: NDArray[np.uint64] | None) -> int:
     """First or, with a generator for ties, any of the best actions; it may be blocked."""
     best, attain, first = -np.inf, np.uint64(0), 0
@@ -55,7 +55,7 @@ def _greedy(q: NDArray[np.float64], row: int, rule: int, ties: NDArray[np.uint64
     return first
 
 
-@jit()
+@jit(inline="always")
 def _choose(
     moves: Moves,
     run: Run,

@@ -1,0 +1,147 @@
+"""Trainings with readings that fluctuate, and what came of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.agents import RssAgent
+from rssnav.results import TrainingResult
+from rssnav.states import ExactStates, Fluctuation, IntervalStates, StateRule, ToleranceStates
+from rssnav.training import train
+from rssnav.world import GridWorld
+
+SIGMAS_DB = (0.0, 0.5, 1.0, 2.0, 4.0)
+CORRELATIONS = (0.0, 0.9)
+THRESHOLDS_DB = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
+WIDTHS_DB = (0.5, 1.0, 2.0, 4.0)
+EPISODES = 5000
+STEP_LIMIT = 1_000_000
+LAST_EPISODES = 100
+
+RuleName = Literal["exact", "tolerance", "intervals"]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How readings fluctuate, and how they become states.
+
+    Attributes
+    ----------
+    rule : {"exact", "tolerance", "intervals"}
+        How a reading becomes a state.
+    width_db : float
+        Threshold Th of tolerance states, width of intervals, 0 for exact states [dB].
+    fluctuation : Fluctuation
+        How readings differ from the map.
+    """
+
+    rule: RuleName
+    width_db: float
+    fluctuation: Fluctuation
+
+    def states(self, world: GridWorld) -> StateRule:
+        """State rule for a world: intervals cover the readings of its cells."""
+        if self.rule == "exact":
+            return ExactStates()
+        if self.rule == "tolerance":
+            return ToleranceStates(self.width_db)
+        low_dbm, high_dbm = float(world.rss_dbm.min()), float(world.rss_dbm.max())
+        return IntervalStates.uniform(low_dbm, high_dbm, self.width_db)
+
+
+def settings() -> Iterator[Setting]:
+    """Yield exact states for steady readings, then all rules for every fluctuation."""
+    yield Setting("exact", 0.0, Fluctuation())
+    rules: list[tuple[RuleName, float]] = [
+        *(("tolerance", threshold_db) for threshold_db in THRESHOLDS_DB),
+        *(("intervals", width_db) for width_db in WIDTHS_DB),
+    ]
+    for sigma_db, correlation in product(SIGMAS_DB, CORRELATIONS):
+        if sigma_db == 0.0 and correlation > 0.0:
+            continue
+        for rule, width_db in rules:
+            yield Setting(rule, width_db, Fluctuation(sigma_db, correlation))
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What came of a setting in a scenario, of R runs.
+
+    Attributes
+    ----------
+    scenario : int
+    setting : Setting
+    converged : (R,) bool
+        Whether the run flew the same path three times in a row.
+    arrived : (R,) bool
+        Whether the greedy flight, with steady readings, reaches the source.
+    n_states : (R,) int64
+        States the agent told apart in the end.
+    success : (R,) float64
+        Share of the last episodes that ended by a reading that says the source is found.
+    steps : (R,) float64
+        Mean steps of the last episodes, those cut included.
+    """
+
+    scenario: int
+    setting: Setting
+    converged: NDArray[np.bool_]
+    arrived: NDArray[np.bool_]
+    n_states: NDArray[np.int64]
+    success: NDArray[np.float64]
+    steps: NDArray[np.float64]
+
+
+def measure(
+    scenario: int,
+    world: GridWorld,
+    setting: Setting,
+    *,
+    runs: int,
+    seed: int,
+    threads: int | None,
+) -> Outcome:
+    """Train the RSS agent for 5000 episodes or a million steps, whichever ends first.
+
+    Raises
+    ------
+    TrainingInterrupted
+        On Ctrl-C.
+    """
+    result = train(
+        world,
+        RssAgent(setting.states(world), fluctuation=setting.fluctuation),
+        runs=runs,
+        episodes=EPISODES,
+        seed=seed,
+        max_total_steps=STEP_LIMIT,
+        threads=threads,
+    )
+    last = _last_episodes(result)
+    return Outcome(
+        scenario=scenario,
+        setting=setting,
+        converged=result.converged_episode >= 0,
+        arrived=result.reached,
+        n_states=result.n_labels,
+        success=_mean_of(~result.truncated, last),
+        steps=_mean_of(result.steps, last),
+    )
+
+
+def _last_episodes(result: TrainingResult) -> NDArray[np.bool_]:
+    """Mark the last episodes of each run, shape (R, E)."""
+    episode = np.arange(result.steps.shape[1])
+    flown = result.episodes_flown[:, None]
+    return (episode < flown) & (episode >= flown - LAST_EPISODES)
+
+
+def _mean_of(values: NDArray[np.generic], where: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Mean of each row's (R, E) marked values, shape (R,)."""
+    return np.mean(values.astype(np.float64), axis=1, where=where)
