@@ -108,7 +108,7 @@ def run_paper(
 ) -> Paper:
     """Run the whole paper, and write everything below one folder.
 
-    ``maps/``, ``training/``, ``figures/`` (PNG and PDF), ``tables/`` (CSV), ``summary.json`` and
+    ``maps/``, ``training/100-runs/``, ``figures/`` (PNG and PDF), ``tables/`` (CSV), ``summary.json`` and
     ``report.html``. Maps and trainings that are already there and were made with the same plan,
     parameters, seed and number of realisations are taken over.
 
@@ -153,7 +153,7 @@ def run_paper(
     out, tell = Path(out), notice or _ignore
     runs = (QUICK_RUNS if quick else RUNS) if runs is None else runs
     record = Record(seed, runs, quick, tuple(str(plan) for plan in plans))
-    plan = TrainingPlan(out / "training", runs, seed, threads, resume, tell)
+    plan = TrainingPlan(out / "training" / f"{runs}-runs", runs, seed, threads, resume, tell)
     run = _Run(out, plan, record, threads, progress or _ignore, tell)
     scenarios = _make_maps(run, plans)
     results = _train(run, scenarios)

@@ -80,7 +80,7 @@ def test_stages_follow_each_other_and_end(run):
 def test_everything_is_written(run):
     names = {str(path.relative_to(run.out)) for path in run.out.rglob("*") if path.is_file()}
     figures = {f"figures/{f.key}.{suffix}" for f in FIGURES for suffix in ("png", "pdf")}
-    files = {f"training/{key.name}.h5" for key in run.paper.data.results}
+    files = {f"training/{RUNS}-runs/{key.name}.h5" for key in run.paper.data.results}
     tables = {f"tables/{table.key}.csv" for table in run.paper.tables} | {"tables/claims.csv"}
     assert len(files) == 12
     assert figures | files | tables <= names
@@ -128,10 +128,15 @@ def one_figure(monkeypatch):
 
 @pytest.mark.usefixtures("one_figure")
 def test_a_second_call_takes_everything_over(run):
-    before = {path: path.stat().st_mtime_ns for path in (run.out / "training").iterdir()}
+    before = {
+        path: path.stat().st_mtime_ns for path in (run.out / "training" / f"{RUNS}-runs").iterdir()
+    }
     again = run.again()
     assert {path: path.stat().st_mtime_ns for path in before} == before
-    assert f"12 of 12 trainings were taken over from {run.out / 'training'}" in run.notices
+    assert (
+        f"12 of 12 trainings were taken over from {run.out / 'training' / f'{RUNS}-runs'}"
+        in run.notices
+    )
     assert again.record.trained == {}
     for key, result in run.paper.data.results.items():
         np.testing.assert_array_equal(again.data.results[key].steps, result.steps)
@@ -322,7 +327,7 @@ def test_the_summary_holds_results_verdicts_and_record(run):
 
 def test_trainings_on_disk_are_those_of_the_report(run):
     for key, result in run.paper.data.results.items():
-        path = run.out / "training" / f"{key.name}.h5"
+        path = run.out / "training" / f"{RUNS}-runs" / f"{key.name}.h5"
         stored = TrainingResult.load(path)
         np.testing.assert_array_equal(stored.path_length_m, result.path_length_m)
         with h5py.File(path) as file:
