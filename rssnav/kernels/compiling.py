@@ -73,7 +73,12 @@ def jit(
     """
 
     def compiled(function: Function) -> Function:
-        compile_it: Any = numba.njit(cache=True, nogil=True, inline=inline, _nrt=allocates)
+        compile_it: Any = numba.njit(  # pyright: ignore[reportCallIssue]
+            cache=True,
+            nogil=True,
+            inline=inline,
+            _nrt=allocates,  # pyright: ignore[reportArgumentType]
+        )
         with _own_cache():
             return compile_it(function)
 

@@ -123,8 +123,10 @@ def resample(belief: Belief, model: Model, generator: NDArray[np.uint64]) -> Non
             shift = model.jitter[c] * gaussian(draw(generator), draw(generator))
             value = belief.particles[k, c] + shift
             particle[c] = min(max(value, model.low[c]), model.high[c])
-    belief.particles[:] = belief.resampled
-    belief.weights[:] = 1.0 / count
+    for drawn in range(count):
+        for c in range(4):
+            belief.particles[drawn, c] = belief.resampled[drawn, c]
+        belief.weights[drawn] = 1.0 / count
 
 
 @jit()
