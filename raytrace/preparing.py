@@ -97,7 +97,7 @@ def prepare(
         level=level.astype(np.int64),
         image_z=np.array(
             [image_heights(h, scene.height_m, config.max_reflections)[0] for h in heights]
-        ).reshape(len(heights), -1),
+        ).reshape(len(heights), 2 * config.max_reflections + 1),
         image_bounces=image_heights(0.0, 1.0, config.max_reflections)[1],
         max_order=config.max_reflections,
     )  # fmt: skip

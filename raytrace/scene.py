@@ -13,7 +13,7 @@ from raytrace.edges import LevelEdge, UprightEdge, find_level_edges, find_uprigh
 from raytrace.errors import SceneError
 from raytrace.kernels.plan_view import PlanView
 from raytrace.materials import find_material
-from raytrace.sheets import OPEN, Sheets, read_sheets
+from raytrace.sheets import read_sheets
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,8 +79,8 @@ class Scene:
             find_material(name)
             if not 0.0 < thickness < 10.0:
                 raise SceneError(f"{name} of thickness {thickness} m: expected 0 to 10 m")
+        _check_indices(face_material, len(mesh.faces), len(slabs))
         sheets = read_sheets(mesh, face_material)
-        _check_indices(sheets, len(slabs))
         cells = cut_into_cells(sheets)
         return cls(
             sheets.height_m,
@@ -94,11 +94,16 @@ class Scene:
         )
 
 
-def _check_indices(sheets: Sheets, n_slabs: int) -> None:
-    """Check that every material index of the sheets stands in the table."""
-    used = {m for p in sheets.panels for m in p.profile.materials if m != OPEN}
-    used |= {sheets.floor_material, sheets.ceiling_material}
-    if not 0 <= min(used) <= max(used) < n_slabs:
+def _check_indices(face_material: NDArray[np.int64], n_faces: int, n_slabs: int) -> None:
+    """Check that every face has a material, and that it stands in the table."""
+    if np.shape(face_material) != (n_faces,):
         raise SceneError(
-            f"face_material refers to material {max(used)}, but the table has {n_slabs}"
+            f"face_material has shape {np.shape(face_material)}: expected one index for each of "
+            f"the {n_faces} faces"
+        )
+    wrong = np.flatnonzero((face_material < 0) | (face_material >= n_slabs))
+    if len(wrong):
+        raise SceneError(
+            f"face {wrong[0]} refers to material {face_material[wrong[0]]}: expected "
+            f"0 to {n_slabs - 1}, an index into the table of materials"
         )

@@ -33,6 +33,8 @@ class Transmitter:
         if len(position) != 3 or not all(abs(c) < float("inf") for c in position):
             raise ValueError(f"position = {self.position}: expected three finite numbers [m]")
         object.__setattr__(self, "position", position)
+        if not abs(self.power_dbm) < float("inf"):
+            raise ValueError(f"power_dbm = {self.power_dbm}: expected a finite number")
         if not 0.0 < self.frequency_hz < float("inf"):
             raise ValueError(f"frequency_hz = {self.frequency_hz}: expected a positive number")
 

@@ -10,7 +10,7 @@ from raytrace.kernels.beams import ORDER, PARENT, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import Radio, Ray, carried, interpolated, new_ray, phasor
 from raytrace.kernels.plan_view import Floats, Ints, PlanView
-from raytrace.kernels.strips import StripTree
+from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import Record, Sums, Trace, recorded
 from raytrace.kernels.unfolding import (
     Leg,
@@ -225,16 +225,11 @@ def unfold_over_rim(
 ) -> tuple[tuple[int, float, float, float], tuple[int, float, float, float]]:
     """Unfold both legs of a path that crosses the edge at u (see `unfolding.unfold`)."""
     tree, strips = trees
-    frame = rim.frame
-    # the frame is orthonormal: (u, 0) back to the plan view
-    x = frame[0] * (u - frame[2]) - frame[3] * frame[5]
-    y = frame[1] * (u - frame[2]) - frame[4] * frame[5]
+    x, y = from_frame(rim.frame, u)
     leg_in = unfold_leg(trace.plan, tree.link, tree.beam, beams[0], (x, y), work.leg_in)
     i = beams[1]
     while i >= 0:
-        f = strips.frame[i]
-        work.images[i, 0] = f[0] * (u - f[2]) - f[3] * f[5]
-        work.images[i, 1] = f[1] * (u - f[2]) - f[4] * f[5]
+        work.images[i, 0], work.images[i, 1] = from_frame(strips.frame[i], u)
         i = strips.link[i, PARENT]
     target = (trace.receivers[receiver, 0], trace.receivers[receiver, 1])
     leg_out = unfold_leg(trace.plan, strips.link, work.images, beams[1], target, work.leg_out)
@@ -285,8 +280,7 @@ def rim_gain(
     )
     # direction of arrival at the edge, from the image of the source in the last beam
     tree = trees[0]
-    x = rim.frame[0] * (path.u - rim.frame[2]) - rim.frame[3] * rim.frame[5]
-    y = rim.frame[1] * (path.u - rim.frame[2]) - rim.frame[4] * rim.frame[5]
+    x, y = from_frame(rim.frame, path.u)
     vx, vy = (x - tree.beam[at[0], 0]) / length_in, (y - tree.beam[at[0], 1]) / length_in
     sin_el_in = rise_in / path.before
     sin_beta = math.hypot(rise_in, at[1]) / path.before

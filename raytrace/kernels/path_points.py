@@ -9,7 +9,7 @@ from raytrace.kernels.beams import Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.level_edges import Rim, RimLegsIn, new_work, unfold_over_rim
 from raytrace.kernels.plan_view import Floats, folded
-from raytrace.kernels.strips import StripTree
+from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import Record, Trace
 from raytrace.kernels.unfolding import (
     DISTANCE,
@@ -173,23 +173,20 @@ def level_points(
     tree, legs_in = source
     hits, seen = lit
     work = new_work(tree, strips)
-    height, frame = trace.radio.height, rim.frame
+    height = trace.radio.height
     z_in, bounces = trace.source_z, trace.image_bounces
     for path in range(record.used[0]):
         hit, p = int(record.key[path, 0]), int(record.key[path, 1])
         a, b = int(record.key[path, 2]), int(record.key[path, 3])
         r, i = hits[hit, 0], hits[hit, 1]
-        rise_in = rim.z - z_in[a]
-        rise_out = trace.image_z[trace.level[r], b] - rim.z
+        rise_in = float(rim.z - z_in[a])
+        rise_out = float(trace.image_z[trace.level[r], b] - rim.z)
         in_, out = math.hypot(legs_in.h[p], rise_in), math.hypot(seen[hit, 1], rise_out)
         u = (legs_in.x[p] * out + seen[hit, 0] * in_) / (in_ + out)
         (n_in, length_in, _, _), (n, length, _, _) = unfold_over_rim(
             trace, rim, u, (tree, strips), (legs_in.beam[p], i), r, work
         )
-        at = (
-            frame[0] * (u - frame[2]) - frame[3] * frame[5],
-            frame[1] * (u - frame[2]) - frame[4] * frame[5],
-        )
+        at = from_frame(rim.frame, u)
         slope = (-rise_in if bounces[a] & 1 else rise_in) / length_in
         row, kind = points[path], kinds[path]
         k = start_path(trace, row, kind)

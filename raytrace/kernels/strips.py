@@ -76,6 +76,15 @@ def in_frame(frame: Floats, x: float, y: float) -> tuple[float, float]:
     )
 
 
+@jit(inline=True)
+def from_frame(frame: Floats, u: float) -> tuple[float, float]:
+    """Point (x, y) of the plan view that is u along the edge; the frame is orthonormal."""
+    return (
+        frame[0] * (u - frame[2]) - frame[3] * frame[5],
+        frame[1] * (u - frame[2]) - frame[4] * frame[5],
+    )
+
+
 @jit(inner=True)
 def copy_rays(rays: Floats, start: int, n: int, out: Floats, to: int) -> None:
     """out[to:to + n] = rays[start:start + n], much faster to compile."""
