@@ -1,0 +1,162 @@
+"""A map file is whole or it is refused, and opens without this project."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from raytrace import (
+    Grid,
+    HalfWaveDipole,
+    Isotropic,
+    MapFileError,
+    RadioMap,
+    TraceConfig,
+    Transmitter,
+)
+
+LAYERS = ("rss_dbm", "rss_coherent_dbm", "path_count")
+
+
+def small_map() -> RadioMap:
+    rng = np.random.default_rng(51)
+    grid = Grid.over((0.0, 0.0, 7.0, 5.0), 0.5, 2.0)
+    rss = rng.uniform(-120.0, -20.0, grid.shape)
+    rss[2, 3] = -np.inf
+    return RadioMap(
+        rss_dbm=rss,
+        rss_coherent_dbm=rss - rng.uniform(0.0, 9.0, grid.shape),
+        path_count=rng.integers(0, 10_000, grid.shape),
+        grid=grid,
+        transmitter=Transmitter((1.5, 2.25, 0.75), 17.5, 5.2e9, HalfWaveDipole(2.15)),
+        config=TraceConfig(5, 0),
+        provenance={"tracer_version": 1, "wall_time_s": 1.25, "material_edition": "none"},
+    ).with_plan("name = 'ein Plan mit Umlauten: äöü'\n", "ab" * 32)
+
+
+@pytest.fixture
+def saved(tmp_path: Path) -> Path:
+    path = tmp_path / "map.h5"
+    small_map().save(path)
+    return path
+
+
+@pytest.mark.parametrize("antenna", [HalfWaveDipole(), HalfWaveDipole(2.15), Isotropic(-3.0)])
+def test_a_map_comes_back_as_it_was(tmp_path: Path, antenna: HalfWaveDipole | Isotropic) -> None:
+    first = small_map()
+    first = replace(first, transmitter=replace(first.transmitter, antenna=antenna))
+    first.save(tmp_path / "map.h5")
+    second = RadioMap.load(tmp_path / "map.h5")
+    for layer in LAYERS:
+        np.testing.assert_array_equal(getattr(first, layer), getattr(second, layer))
+        assert getattr(first, layer).dtype == getattr(second, layer).dtype
+    np.testing.assert_array_equal(first.grid.x, second.grid.x)
+    np.testing.assert_array_equal(first.grid.y, second.grid.y)
+    for name in ("transmitter", "config", "plan_text", "plan_sha256", "provenance"):
+        assert getattr(first, name) == getattr(second, name)
+    for name in ("height_m", "cell_size_m"):
+        assert getattr(first.grid, name) == getattr(second.grid, name)
+
+
+def test_plain_hdf5_shows_units_names_and_coordinates(saved: Path) -> None:
+    first = small_map()
+    with h5py.File(saved) as file:
+        for layer in LAYERS:
+            assert file[layer].attrs["units"] == ("1" if layer == "path_count" else "dBm")
+            assert file[layer].attrs["long_name"]
+            for axis, name in enumerate(("y", "x")):
+                scale = file[layer].dims[axis][0]
+                np.testing.assert_array_equal(scale[:], getattr(first.grid, name))
+                assert scale.attrs["units"] == "m"
+                assert scale.is_scale
+        assert file.attrs["plan_text"] == first.plan_text
+        assert file.attrs["plan_sha256"] == first.plan_sha256
+        assert file.attrs["max_reflections"] == 5
+        assert file.attrs["frequency_hz"] == 5.2e9
+        assert file.attrs["made_with_material_edition"] == "none"
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.2, 0.5, 0.9, 0.999])
+def test_a_truncated_file_is_refused(saved: Path, share: float) -> None:
+    content = saved.read_bytes()
+    saved.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(MapFileError, match=r"map\.h5.*anew"):
+        RadioMap.load(saved)
+
+
+@pytest.mark.parametrize("content", [b"", b"x,y,rss\n1,2,3\n", b"\x89HDF\r\n\x1a\n" + bytes(999)])
+def test_a_file_of_another_kind_is_refused(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "map.h5"
+    path.write_bytes(content)
+    with pytest.raises(MapFileError, match=r"map\.h5"):
+        RadioMap.load(path)
+
+
+def test_hdf5_of_another_kind_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "map.h5"
+    with h5py.File(path, "w") as file:
+        file["rss_dbm"] = np.zeros((3, 3))
+    with pytest.raises(MapFileError, match=r"map\.h5.*not a radio map"):
+        RadioMap.load(path)
+
+
+@pytest.mark.parametrize("version", [0, 2, "1"])
+def test_another_version_is_refused(saved: Path, version: int | str) -> None:
+    with h5py.File(saved, "r+") as file:
+        file.attrs["format_version"] = version
+    with pytest.raises(MapFileError, match=rf"map\.h5.*{version}.*anew"):
+        RadioMap.load(saved)
+
+
+@pytest.mark.parametrize("name", [*LAYERS, "x", "y"])
+def test_a_missing_dataset_is_named(saved: Path, name: str) -> None:
+    with h5py.File(saved, "r+") as file:
+        del file[name]
+    with pytest.raises(MapFileError, match=rf"map\.h5.*{name}.*anew"):
+        RadioMap.load(saved)
+
+
+@pytest.mark.parametrize("name", ["format_version", "frequency_hz", "transmit_antenna"])
+def test_a_missing_attribute_is_named(saved: Path, name: str) -> None:
+    with h5py.File(saved, "r+") as file:
+        del file.attrs[name]
+    with pytest.raises(MapFileError, match=rf"map\.h5.*{name}.*anew"):
+        RadioMap.load(saved)
+
+
+@pytest.mark.parametrize("data", [np.full((10, 14), np.nan), np.zeros((3, 3)), np.zeros(140)])
+def test_a_layer_that_does_not_fit_is_refused(saved: Path, data: np.ndarray) -> None:
+    with h5py.File(saved, "r+") as file:
+        del file["rss_dbm"]
+        file["rss_dbm"] = data
+    with pytest.raises(MapFileError, match=r"map\.h5.*rss_dbm"):
+        RadioMap.load(saved)
+
+
+def test_a_missing_file_is_just_missing(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"nowhere\.h5"):
+        RadioMap.load(tmp_path / "nowhere.h5")
+
+
+def test_a_save_that_fails_leaves_the_old_file_and_nothing_else(saved: Path) -> None:
+    before = saved.read_bytes()
+    broken = replace(small_map(), provenance={"what": object()})
+    with pytest.raises(TypeError):
+        broken.save(saved)
+    assert saved.read_bytes() == before
+    assert os.listdir(saved.parent) == ["map.h5"]
+
+
+def test_a_save_replaces_the_old_file(saved: Path) -> None:
+    louder = replace(small_map(), rss_dbm=small_map().rss_dbm + 1.0)
+    louder.save(saved)
+    np.testing.assert_array_equal(RadioMap.load(saved).rss_dbm, louder.rss_dbm)
+    assert os.listdir(saved.parent) == ["map.h5"]
+
+
+def test_folders_are_made_on_the_way(tmp_path: Path) -> None:
+    small_map().save(tmp_path / "new" / "folder" / "map.h5")
+    assert (tmp_path / "new" / "folder" / "map.h5").exists()
