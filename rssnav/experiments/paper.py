@@ -109,8 +109,8 @@ def run_paper(
     """Run the whole paper, and write everything below one folder.
 
     ``maps/``, ``training/100-runs/``, ``figures/`` (PNG and PDF), ``tables/`` (CSV),
-    ``summary.json`` and ``report.html``. Maps and trainings that are already there and were made with the same plan,
-    parameters, seed and number of realisations are taken over.
+    ``summary.json`` and ``report.html``. Maps and trainings that are already there and were made
+    with the same plan, parameters, seed and number of realisations are taken over.
 
     Parameters
     ----------
