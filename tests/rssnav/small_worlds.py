@@ -45,6 +45,10 @@ class SmallMap:
     grid: SmallGrid
     plan_sha256: str = field(default="5" * 64)
 
+    @property
+    def rss_coherent_dbm(self):
+        return self.rss_dbm - 0.25
+
 
 def log_distance_map(plan):
     """RSS that falls with distance, unique in every cell, above -21 dBm within 2 m."""
