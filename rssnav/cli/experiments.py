@@ -1,8 +1,9 @@
-"""``rssnav experiments`` and ``rssnav report``: every figure and table of the paper."""
+"""``rssnav experiments`` and ``rssnav report``: the paper, and studies beyond it."""
 
 from __future__ import annotations
 
 from collections import Counter
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -19,11 +20,24 @@ Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Where everything is, 
 RESULTS = Path("results")
 
 
+class What(StrEnum):
+    """What `rssnav experiments` runs."""
+
+    PAPER = "paper"
+    SENSITIVITY = "sensitivity"
+    NOISE = "noise"
+    COMPARISON = "comparison"
+
+
 def add_to(parent: typer.Typer) -> None:
     """Add the commands ``experiments`` and ``report``."""
     parent.command(
         "experiments",
-        epilog=examples("rssnav experiments --quick", "rssnav experiments --out results"),
+        epilog=examples(
+            "rssnav experiments --quick",
+            "rssnav experiments --out results",
+            "rssnav experiments sensitivity",
+        ),
     )(run_experiments)
     parent.command("report", epilog=examples("rssnav report", "rssnav report --out results"))(
         remake_report
@@ -31,6 +45,13 @@ def add_to(parent: typer.Typer) -> None:
 
 
 def run_experiments(
+    what: Annotated[
+        What,
+        typer.Argument(
+            help="The paper; or what its open choices change (sensitivity), readings that "
+            "fluctuate (noise), other methods and the optimum (comparison)."
+        ),
+    ] = What.PAPER,
     quick: Annotated[
         bool, typer.Option("--quick", help="Few realisations: the same figures in a minute.")
     ] = False,
@@ -51,10 +72,14 @@ def run_experiments(
     ] = True,
     threads: Threads = None,
 ) -> None:
-    """Run the whole paper: maps, trainings, figures, tables, and a report to read.
+    """Run the whole paper, or a study beyond it: maps, trainings, figures, tables, a report.
 
     What is already there and still current is taken over. After Ctrl-C the same command goes on.
     """
+    if what is not What.PAPER:
+        if runs is not None or not resume:
+            raise typer.BadParameter("--runs and --no-resume belong to the paper")
+        return _run_study(what, out, quick, seed, threads)
     from rssnav.experiments import run_paper
 
     try:
@@ -75,6 +100,16 @@ def run_experiments(
             "from there"
         ) from interrupt
     _print(paper)
+
+
+def _run_study(what: What, out: Path, quick: bool, seed: int, threads: int | None) -> None:
+    from rssnav.experiments import comparison, noise, sensitivity
+
+    study = {What.SENSITIVITY: sensitivity, What.NOISE: noise, What.COMPARISON: comparison}[what]
+    with stage_progress(compiles=_must_compile()) as show:
+        done = study.run(out, quick=quick, seed=seed, threads=threads, progress=show)
+    for file in done.files:
+        print(file)
 
 
 def remake_report(out: Out = RESULTS, threads: Threads = None) -> None:

@@ -286,6 +286,26 @@ def test_experiments_passes_its_options_on(monkeypatch, tmp_path) -> None:
     }  # fmt: skip
 
 
+def test_a_study_is_run_and_its_files_are_named(monkeypatch, tmp_path) -> None:
+    from rssnav.experiments import noise, studies
+
+    asked = {}
+
+    def study(out, **options):
+        asked.update(out=out, **options)
+        return studies.Study((), (tmp_path / "tables" / "noise.csv",))
+
+    monkeypatch.setattr(noise, "run", study)
+    result = run("experiments", "noise", "--quick", "--out", tmp_path, "--seed", 5)
+    assert result.exit_code == 0
+    assert result.stdout.split() == [str(tmp_path / "tables" / "noise.csv")]
+    assert (asked["out"], asked["quick"], asked["seed"]) == (tmp_path, True, 5)
+
+
+def test_a_study_refuses_the_options_of_the_paper(tmp_path) -> None:
+    assert run("experiments", "noise", "--runs", 3, "--out", tmp_path).exit_code == 2
+
+
 def test_report_without_a_run_says_how_to_make_one(tmp_path) -> None:
     result = run("report", "--out", tmp_path)
     assert result.exit_code == 1
