@@ -22,6 +22,9 @@ Ints = NDArray[np.int64]
 
 TURN = 2.0 * np.pi
 
+STRAIGHT_RAD = 1e-6
+"""A wall that bends by less does not diffract [rad]: snapping bends short pieces (`SNAP_M`)."""
+
 
 @dataclass(frozen=True, eq=False)
 class UprightEdge:
@@ -122,13 +125,13 @@ def _edges_at(
 ) -> Iterator[UprightEdge]:
     x, y = cells.vertices[vertex]
     levels = sorted({0.0, height_m} | {t for _, profile in walls for t in profile.tops})
-    standing: dict[_Wedge, list[float]] = {}
+    standing: list[tuple[_Wedge, float, float]] = []
     for z_low, z_high in pairwise(levels):
-        for wedge in _wedges(walls, 0.5 * (z_low + z_high)):
-            stretch = standing.setdefault(wedge, [z_low, z_low])
-            if stretch[1] == z_low:
-                stretch[1] = z_high
-    for wedge, (z_low, z_high) in standing.items():
+        below = {wedge: low for wedge, low, high in standing if high == z_low}
+        wedges = list(_wedges(walls, 0.5 * (z_low + z_high)))
+        standing = [s for s in standing if s[2] < z_low or s[0] not in wedges]
+        standing += [(wedge, below.get(wedge, z_low), z_high) for wedge in wedges]
+    for wedge, z_low, z_high in standing:
         inside = [c for c, azimuth in around if (azimuth - wedge.o_face) % TURN < wedge.angle]
         if inside:
             yield UprightEdge(
@@ -142,7 +145,7 @@ def _wedges(walls: list[tuple[float, Profile]], z: float) -> Iterator[_Wedge]:
     solid = sorted((azimuth, m) for azimuth, p in walls if (m := p.at(z)) != OPEN)
     for (start, o_material), (end, n_material) in zip(solid, solid[1:] + solid[:1], strict=True):
         angle = end - start if end > start else end - start + TURN
-        if angle > np.pi + 1e-9:
+        if angle > np.pi + STRAIGHT_RAD:
             yield _Wedge(start, angle, o_material, n_material)
 
 

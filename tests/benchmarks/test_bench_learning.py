@@ -3,7 +3,8 @@
     pytest tests/benchmarks/test_bench_learning.py --benchmark-enable -s
 
 prints million steps a second of the kernel and of q_loop.c, one thread, rounds taken in turn so
-that all see the same machine. Without --benchmark-enable only the equality of results is tested.
+that all see the same machine, and how much faster two threads train than one. Without
+--benchmark-enable each runs once, briefly, and only the equality of results is tested.
 """
 
 from __future__ import annotations
@@ -14,17 +15,17 @@ import numpy as np
 import pytest
 from c_loop import COMPILER, CRun, build
 
-from rssnav import LocationAgent, QLearning, RssAgent
+from rssnav import LocationAgent, QLearning, RssAgent, train
 from rssnav.agents import Agent
 from rssnav.kernels import common
 from rssnav.learners import LearningProblem, TabularLearner
-from rssnav.training import generator_states
+from rssnav.training import generator_states, n_threads
 from rssnav.world import ACTIONS, GridWorld
 
 EPISODES = 1500
 ROUNDS = 7
 
-pytestmark = pytest.mark.skipif(COMPILER is None, reason="needs a C compiler")
+needs_compiler = pytest.mark.skipif(COMPILER is None, reason="needs a C compiler")
 
 
 def hall_with_pillars(n_x: int = 96, n_y: int = 26) -> GridWorld:
@@ -63,6 +64,7 @@ def fly_all(learner: TabularLearner, episodes: int) -> None:
 AGENTS = pytest.mark.parametrize("agent", [RssAgent(), LocationAgent()], ids=["rss", "location"])
 
 
+@needs_compiler
 @AGENTS
 def test_c_loop_gives_the_same_results(agent: Agent, tmp_path):
     problem = LearningProblem.of(hall_with_pillars(), agent, QLearning())
@@ -77,20 +79,22 @@ def test_c_loop_gives_the_same_results(agent: Agent, tmp_path):
         assert np.array_equal(run.q, learner.run.q), function
 
 
+@needs_compiler
 @AGENTS
 def test_bench_kernel_beside_c(agent: Agent, tmp_path, benchmark):
+    episodes = EPISODES if benchmark.enabled else 20
     problem = LearningProblem.of(hall_with_pillars(), agent, QLearning())
     library = build(tmp_path)
     rates: dict[str, list[float]] = {"kernel": [], "learn_plain": [], "learn_cached": []}
 
     def one_round() -> None:
-        learner = TabularLearner(problem, generator_states(0, 0), EPISODES)
+        learner = TabularLearner(problem, generator_states(0, 0), episodes)
         begin = time.thread_time()
-        fly_all(learner, EPISODES)
+        fly_all(learner, episodes)
         seconds = time.thread_time() - begin
         rates["kernel"].append(learner.run.counters[common.TOTAL_STEPS] / seconds)
         for function in ("learn_plain", "learn_cached"):
-            run = CRun(problem, generator_states(0, 0), EPISODES)
+            run = CRun(problem, generator_states(0, 0), episodes)
             begin = time.thread_time()
             run.learn(library, function)
             rates[function].append(run.steps.sum() / (time.thread_time() - begin))
@@ -103,3 +107,21 @@ def test_bench_kernel_beside_c(agent: Agent, tmp_path, benchmark):
         f"\n{agent.name}: kernel {kernel:.1f}, C {plain:.1f}, C with cached maxima {cached:.1f} "
         f"million steps a second; ratios {kernel / plain:.2f} and {kernel / cached:.2f}"
     )
+
+
+@pytest.mark.skipif(n_threads(None) < 2, reason="needs two cores")
+def test_bench_two_threads_beside_one(benchmark):
+    world = hall_with_pillars()
+    episodes = EPISODES if benchmark.enabled else 20
+    seconds: dict[int, list[float]] = {1: [], 2: []}
+
+    def one_round() -> None:
+        for threads, taken in seconds.items():
+            begin = time.perf_counter()
+            train(world, LocationAgent(), runs=8, episodes=episodes, threads=threads)
+            taken.append(time.perf_counter() - begin)
+
+    benchmark.pedantic(one_round, rounds=ROUNDS, warmup_rounds=1)
+    one, two = (min(taken) for taken in seconds.values())
+    benchmark.extra_info.update(one_thread_s=one, two_threads_s=two)
+    print(f"\ntwo threads are {one / two:.2f} times as fast as one ({one:.2f} s, {two:.2f} s)")

@@ -30,7 +30,7 @@ def as_found(paths: Paths) -> Found:
 def assert_same_paths(ours: Found, theirs: Found, tolerance_m: float) -> None:
     """Require the same receivers, interactions and points, in any order."""
     a, b = (
-        np.column_stack([p.receiver, p.kinds, p.vertices.reshape(len(p.receiver), -1)])
+        np.column_stack([p.receiver, p.kinds, p.vertices.reshape(-1, 3 * p.vertices.shape[1])])
         for p in (ours, theirs)
     )
     far_a, _ = cKDTree(b).query(a)
