@@ -84,6 +84,8 @@ class Method:
         Optimal return minus the flight's; empty where there is no return.
     sigma_db : float
         Fluctuation of the readings [dB].
+    false_alarms : float or None
+        Share of the runs that ended by a reading that wrongly said "found", for searchers.
     """
 
     kind: str
@@ -96,6 +98,7 @@ class Method:
     training_steps: NDArray[np.float64]
     regret: NDArray[np.float64]
     sigma_db: float = 0.0
+    false_alarms: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,6 +250,7 @@ def _searcher(
         training_steps=np.empty(0),
         regret=np.empty(0),
         sigma_db=fluctuation.sigma_db,
+        false_alarms=float(result.false_alarm.mean()),
     )
 
 
@@ -258,7 +262,8 @@ def comparison_table(rows: list[tuple[Cell, ...]]) -> Table:
         "Success: runs whose final flight (learners: the greedy one after training; searchers: the "
         "only one) reaches the source. Steps, metres and regret are over those. Detour: metres "
         "over the fewest possible. Regret: optimal discounted return minus the flight's. The "
-        f"σ = {NOISE.sigma_db:g} dB rows have readings that fluctuate.",
+        f"σ = {NOISE.sigma_db:g} dB rows have readings that fluctuate; a false alarm is a reading "
+        "above −21 dBm elsewhere, which ends the flight.",
         (
             Column("scenario", "Scenario"),
             Column("speed_mps", "Speed [m/s]"),
@@ -270,6 +275,7 @@ def comparison_table(rows: list[tuple[Cell, ...]]) -> Table:
             Column("converged", "Converge"),
             Column("training_steps", "Steps flown before"),
             Column("success", "Success", 2),
+            Column("false_alarms", "False alarms", 2),
             Column("mean_steps", "Steps", 1),
             Column("sd_steps", "± sd", 1),
             Column("mean_m", "Length [m]", 1),
@@ -294,6 +300,7 @@ def _row(place: Place, method: Method, shortest_m: float) -> tuple[Cell, ...]:
         method.converged,
         *_mean_and_sd(method.training_steps)[:1],
         method.length_m.size / method.runs,
+        method.false_alarms,
         *_mean_and_sd(method.steps),
         *_mean_and_sd(method.length_m),
         float(method.length_m.mean()) / shortest_m if method.length_m.size else None,
