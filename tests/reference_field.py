@@ -43,7 +43,8 @@ def slab(permittivity: complex, thickness_m: float, wavelength_m: float, cos_i: 
         ratio = inside / free
         back = 1j * np.tan(phase) * (ratio - 1.0 / ratio)
         both = 2.0 + 1j * np.tan(phase) * (ratio + 1.0 / ratio)
-        return back / both, 2.0 / (np.cos(phase) * both)
+        delay = np.exp(-1j * phase)
+        return back / both, 4.0 * delay / ((1.0 + delay**2) * both)
 
     (r_te, t_te), (r_tm, t_tm) = line(1.0 / cos_i, 1.0 / q), line(cos_i, q / permittivity)
     return Slab(r_te, -r_tm, t_te, t_tm)

@@ -18,7 +18,8 @@ from raytrace import (
 from raytrace.kernels.path_points import DIFFRACTION
 
 TOLERANCE = 1e-4
-"""Relative: the tables are interpolated. The worst path is off by 2.4e-5, the median by 1e-7."""
+"""Relative: tables are interpolated. The worst path off a dipole's null is off by 2.4e-5, the median
+by 1e-7; near the null, 160 dB under the strongest path counts as nothing."""
 
 ANTENNAS = {"isotropic": Isotropic(), "dipole": HalfWaveDipole()}
 
@@ -36,7 +37,7 @@ def with_and_without_tables(name: str, antenna: Antenna) -> tuple[Paths, np.ndar
 @pytest.mark.parametrize("name", ROOMS)
 def test_gains_are_those_of_a_field_vector(name: str, antenna: str) -> None:
     paths, expected = with_and_without_tables(name, ANTENNAS[antenna])
-    floor = 1e-9 * np.abs(expected).max()
+    floor = 1e-8 * np.abs(expected).max()
     np.testing.assert_array_less(
         np.abs(paths.gain - expected), TOLERANCE * np.abs(expected) + floor
     )
