@@ -18,8 +18,8 @@ from raytrace import (
 from raytrace.kernels.path_points import DIFFRACTION
 
 TOLERANCE = 1e-4
-"""Relative: tables are interpolated. The worst path off a dipole's null is off by 2.4e-5, the median
-by 1e-7; near the null, 160 dB under the strongest path counts as nothing."""
+"""Relative: tables are interpolated. Off a dipole's null the worst path is off by 2.4e-5, the
+median by 1e-7; near the null, 160 dB under the strongest path counts as nothing."""
 
 ANTENNAS = {"isotropic": Isotropic(), "dipole": HalfWaveDipole()}
 
