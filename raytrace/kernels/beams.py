@@ -28,6 +28,10 @@ IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y = range(6)
 Rows = TypeVar("Rows", bound=NDArray[Any])
 
 
+ON_LINE_M = 1e-8
+"""A point this near to an edge's line sees it edge-on, that is, not at all [m]."""
+
+
 class Tree(NamedTuple):
     """Beams, each behind its parent: `link` (n, 8) int32 and `beam` (n, 6) [m]."""
 
@@ -110,6 +114,21 @@ def grow_tree(
 
 
 @jit(inner=True)
+def leads_on(link: NDArray[np.int32], i: int, cell: int) -> bool:
+    """Whether beam i may enter a cell: a straight ray is in a convex cell only once.
+
+    That also ends slivers, which rounding could else lead round a corner for ever.
+    """
+    while cell >= 0:
+        if link[i, CELL] == cell:
+            return False
+        if link[i, REFLECTED] or link[i, PARENT] < 0:
+            return True
+        i = link[i, PARENT]
+    return False
+
+
+@jit(inner=True)
 def split(
     view: PlanView,
     bounces: Ints,
@@ -126,7 +145,7 @@ def split(
         if not lit:
             continue
         needed = max(link[i, BOUNCES], bounces[e, 0])
-        if view.beyond[e] >= 0 and link[i, ORDER] + needed <= max_order:
+        if link[i, ORDER] + needed <= max_order and leads_on(link, i, view.beyond[e]):
             pass_through(view, link, beam, i, n, e, window)
             link[n, BOUNCES] = needed
             n += 1
@@ -145,7 +164,8 @@ def narrowed(
     """Whether a beam lights edge e, and the window (right x, y, left x, y) there."""
     px, py = beam[IMAGE_X], beam[IMAGE_Y]
     rx, ry, lx, ly = view.ends[e, 0], view.ends[e, 1], view.ends[e, 2], view.ends[e, 3]
-    lit = cross(rx - px, ry - py, lx - px, ly - py) > 0.0
+    off = view.plane[e, 0] * px + view.plane[e, 1] * py - view.plane[e, 2]
+    lit = abs(off) > ON_LINE_M and cross(rx - px, ry - py, lx - px, ly - py) > 0.0
     if lit and entry >= 0:
         if view.line[e] == view.line[entry]:
             lit = False

@@ -21,6 +21,7 @@ from raytrace.kernels.beams import (
     Targets,
     copy_row,
     enlarged,
+    leads_on,
 )
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.plan_view import Floats, Ints, PlanView
@@ -127,7 +128,10 @@ def is_sliver(rays: Floats, n: int) -> bool:
 
 @jit(inner=True)
 def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, out: Floats) -> int:
-    """Clip beam i to the part that meets edge e; corners to `out`, return how many, 0 if none."""
+    """Clip beam i to the part that meets edge e; corners to `out`, return how many, 0 if none.
+
+    A polygon of almost no width could by rounding light an edge from behind; its mean ray tells.
+    """
     frame = tree.frame[i]
     x1, h1 = in_frame(frame, view.ends[e, 0], view.ends[e, 1])
     x2, h2 = in_frame(frame, view.ends[e, 2], view.ends[e, 3])
@@ -141,7 +145,13 @@ def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, 
     if h2 > 1e-9 and n >= 3:
         copy_rays(out, 0, n, work, 0)
         n = clipped(work, n, x2, h2, -frame[6], out)
-    return 0 if is_sliver(out, n) else n
+    if is_sliver(out, n):
+        return 0
+    slope = 0.0
+    for k in range(n):
+        slope += out[k, 1] / n
+    faces = frame[6] * (slope * (h2 - h1) - (x2 - x1)) > 0.0
+    return n if faces else 0
 
 
 @jit(inner=True)
@@ -201,7 +211,7 @@ def split_strip(
             continue
         for way in range(2):
             needed = max(link[i, BOUNCES], bounces[e, way])
-            possible = view.beyond[e] >= 0 if way == 0 else view.profile[e] >= 0
+            possible = leads_on(link, i, view.beyond[e]) if way == 0 else view.profile[e] >= 0
             if not possible or link[i, ORDER] + way + needed > max_order:
                 continue
             copy_row(link, n, i)
