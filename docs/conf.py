@@ -20,3 +20,4 @@ autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 napoleon_numpy_docstring = True
 napoleon_use_ivar = True
+suppress_warnings = ["ref.python"]  # fields of one name in two classes

@@ -27,8 +27,8 @@ class Paths:
     length_m
         (n,) [m].
     gain
-        (n,) complex path gain with both antennas: received power is P_tx |gain|^2, and the
-        gains of a receiver's paths add up to its coherent field.
+        (n,) complex path gain with both antennas: its squared magnitude is received over
+        transmitted power, and the gains of a receiver's paths add up to its coherent field.
     """
 
     receiver: NDArray[np.int64]
@@ -48,7 +48,7 @@ class Paths:
 
     @property
     def gain_db(self) -> NDArray[np.float64]:
-        """(n,) path gain 20 log10 |gain| [dB]; -inf for a path that an antenna's null removes."""
+        """(n,) path gain [dB], 20 log10 of its magnitude; -inf where an antenna has its null."""
         with np.errstate(divide="ignore"):
             return 20.0 * np.log10(np.abs(self.gain))
 
