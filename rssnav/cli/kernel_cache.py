@@ -8,6 +8,7 @@ from numba.core import config
 
 import raytrace.kernels
 import rssnav.kernels
+from rssnav.kernels.compiling import cache_folder
 
 
 class KernelCache(NamedTuple):
@@ -30,25 +31,17 @@ class KernelCache(NamedTuple):
 
 def tracer_cache() -> KernelCache:
     """State of the tracer's kernels."""
-    return _cache_of(raytrace.kernels)
+    return _cache_of(raytrace.kernels, Path(getattr(config, "CACHE_DIR", "")))
 
 
 def learning_cache() -> KernelCache:
     """State of the kernels of the learning loops."""
-    return _cache_of(rssnav.kernels)
+    return _cache_of(rssnav.kernels, cache_folder())
 
 
-def _cache_of(package: ModuleType) -> KernelCache:
-    """Look for a package's kernels in numba's cache folder and beside the sources."""
-    sources = Path(package.__path__[0])
-    modules = {source.stem for source in sources.glob("*.py")}
-    cache_dir = getattr(config, "CACHE_DIR", "")
-    chosen = Path(cache_dir) if cache_dir else sources / "__pycache__"
-    files = {
-        file
-        for folder in (chosen, sources / "__pycache__")
-        for file in folder.rglob("*.nb[ci]")
-        if file.name.split(".")[0] in modules
-    }
+def _cache_of(package: ModuleType, folder: Path) -> KernelCache:
+    """Look for a package's kernels in its cache folder."""
+    modules = {source.stem for source in Path(package.__path__[0]).glob("*.py")}
+    files = [f for f in folder.rglob("*.nb[ci]") if f.name.split(".")[0] in modules]
     indices = [file for file in files if file.suffix == ".nbi"]
-    return KernelCache(chosen, len(indices), sum(file.stat().st_size for file in files))
+    return KernelCache(folder, len(indices), sum(file.stat().st_size for file in files))
