@@ -1,7 +1,8 @@
 """Building materials and the reflection of a plane wave by a wall of them.
 
 Permittivity and conductivity follow Recommendation ITU-R P.2040-4 (09/2025), section 3:
-``eps_r = a f^b`` and ``sigma = c f^d`` [S/m] with f in GHz. A wall is a homogeneous slab; its
+``eps_r = a f^b`` and ``sigma = c f^d`` [S/m] with f in GHz; brick, chipboard, plywood, marble
+and floorboard keep the values of P.2040-3. A wall is a homogeneous slab; its
 reflection coefficients are those of P.2040-4 eqs. (37)-(43).
 """
 
