@@ -8,7 +8,6 @@ written beside its place and then renamed: a killed run leaves the old file or n
 from __future__ import annotations
 
 import dataclasses
-import os
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.agents import Agent, LocationAgent, QLearning, RssAgent
+from rssnav.files import whole_file
 from rssnav.results import Schedule, TrainingResult
 from rssnav.states import ExactStates, Fluctuation, IntervalStates, StateRule, ToleranceStates
 from rssnav.world import GridWorld
@@ -60,23 +60,16 @@ class ResultFileError(ValueError):
 
 def save_result(result: TrainingResult, path: str | Path) -> None:
     """Write a result to an HDF5 file, replacing it only once it is complete."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with h5py.File(beside, "w") as file:
-            file.attrs["format"], file.attrs["version"] = FORMAT, VERSION
-            _write_parameters(file, result)
-            world = file.create_group("world")
-            _write_arrays(world, result.world, _WORLD_ARRAYS)
-            for name in _WORLD_SCALARS:
-                world.attrs[name] = getattr(result.world, name)
-            _write_arrays(file, result, _RESULT_ARRAYS)
-            if result.q is not None:
-                _write_arrays(file, result, _Q_ARRAY)
-        os.replace(beside, path)
-    finally:
-        beside.unlink(missing_ok=True)
+    with whole_file(path) as beside, h5py.File(beside, "w") as file:
+        file.attrs["format"], file.attrs["version"] = FORMAT, VERSION
+        _write_parameters(file, result)
+        world = file.create_group("world")
+        _write_arrays(world, result.world, _WORLD_ARRAYS)
+        for name in _WORLD_SCALARS:
+            world.attrs[name] = getattr(result.world, name)
+        _write_arrays(file, result, _RESULT_ARRAYS)
+        if result.q is not None:
+            _write_arrays(file, result, _Q_ARRAY)
 
 
 def load_result(path: str | Path) -> TrainingResult:
