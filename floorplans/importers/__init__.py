@@ -1,0 +1,38 @@
+"""Plans from files that others drew: DXF, GeoJSON and IMDF, ROS map_server, IFC.
+
+>>> from floorplans.importers import import_plan
+>>> imported = import_plan("office.dxf")  # doctest: +SKIP
+>>> imported.plan.bounds  # doctest: +SKIP
+(0.0, 0.0, 57.9, 27.9)
+
+A reader for each format makes a `Draft` of what its file says; `assemble` makes the walls meet,
+hangs doors and windows into them, finds the outline and gives a default to what the file does not
+tell. `Imported` holds the plan and says what was assumed and changed.
+"""
+
+from floorplans.importers.assembling import assemble
+from floorplans.importers.draft import (
+    Draft,
+    ImportOptions,
+    LayerUse,
+    Origin,
+    RawOpening,
+    RawWall,
+)
+from floorplans.importers.formats import FORMATS, import_plan, read_draft
+from floorplans.importers.imported import Assumption, Imported
+
+__all__ = [
+    "FORMATS",
+    "Assumption",
+    "Draft",
+    "ImportOptions",
+    "Imported",
+    "LayerUse",
+    "Origin",
+    "RawOpening",
+    "RawWall",
+    "assemble",
+    "import_plan",
+    "read_draft",
+]

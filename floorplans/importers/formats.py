@@ -1,0 +1,131 @@
+"""Which reader a file needs, by its ending and by its first bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from floorplans.errors import PlanError
+from floorplans.importers.assembling import assemble
+from floorplans.importers.draft import Draft, ImportOptions
+from floorplans.importers.imported import Imported
+
+Reader = Callable[[Path, ImportOptions], Draft]
+
+_HEAD_BYTES = 4096
+_PNG = b"\x89PNG\r\n\x1a\n"
+
+
+@dataclass(frozen=True)
+class Format:
+    """A kind of file that can be imported.
+
+    Attributes
+    ----------
+    title : str
+    suffixes : tuple of str
+        In lower case, with the dot.
+    module, function : str
+        The reader; its module is loaded when it is needed.
+    looks_right : callable
+        Whether the first bytes of a file can be the beginning of one of this kind.
+    """
+
+    title: str
+    suffixes: tuple[str, ...]
+    module: str
+    function: str
+    looks_right: Callable[[bytes], bool]
+
+    def reader(self) -> Reader:
+        """Load the reader."""
+        return getattr(import_module(f"floorplans.importers.{self.module}"), self.function)
+
+
+def _is_dxf(head: bytes) -> bool:
+    text = head.removeprefix(b"\xef\xbb\xbf")
+    return text.startswith(b"AutoCAD Binary DXF") or text.split(None, 1)[:1] in ([b"0"], [b"999"])
+
+
+def _is_json(head: bytes) -> bool:
+    return head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"{"
+
+
+def _is_ros_map(head: bytes) -> bool:
+    return head[:2] in (b"P2", b"P5") or head.startswith(_PNG) or b"image:" in head
+
+
+def _is_ifc(head: bytes) -> bool:
+    return head.lstrip()[:13].upper() == b"ISO-10303-21;"
+
+
+FORMATS = (
+    Format("DXF drawing", (".dxf",), "dxf", "read_dxf", _is_dxf),
+    Format("GeoJSON or IMDF", (".geojson", ".json"), "geojson", "read_geojson", _is_json),
+    Format(
+        "ROS map_server map", (".yaml", ".yml", ".pgm", ".png"), "ros_map", "read_ros_map",
+        _is_ros_map,
+    ),
+    Format("IFC model", (".ifc",), "ifc", "read_ifc", _is_ifc),
+)  # fmt: skip
+"""All formats there are readers for."""
+
+
+def import_plan(path: str | Path, options: ImportOptions | None = None) -> Imported:
+    """Make a plan of a file that another program wrote.
+
+    Parameters
+    ----------
+    path : str or Path
+        Its ending names the format; see `FORMATS`.
+    options : ImportOptions, optional
+        What the user knows better than the file.
+
+    Returns
+    -------
+    Imported
+
+    Raises
+    ------
+    PlanError
+        When the file cannot be read, is of another kind, or holds no building.
+    """
+    options = options or ImportOptions()
+    path = Path(path)
+    try:
+        return assemble(read_draft(path, options), options, path.name)
+    except PlanError as error:
+        raise PlanError(
+            error.problem, error.place, error.value, error.origin or str(path)
+        ) from error
+
+
+def read_draft(path: Path, options: ImportOptions) -> Draft:
+    """Read a file with the reader of its format."""
+    kind = _format_of(path)
+    try:
+        with path.open("rb") as file:
+            head = file.read(_HEAD_BYTES)
+    except OSError as error:
+        raise PlanError(f"the file cannot be read: {error.strerror}", origin=str(path)) from error
+    if not head:
+        raise PlanError("the file is empty", origin=str(path))
+    if not kind.looks_right(head):
+        likely = [other.title for other in FORMATS if other.looks_right(head)]
+        hint = f"; it looks like a {likely[0]}" if likely else ""
+        raise PlanError(
+            f"the file ends in {path.suffix} but does not begin like a {kind.title}{hint}",
+            origin=str(path),
+        )
+    return kind.reader()(path, options)
+
+
+def _format_of(path: Path) -> Format:
+    for kind in FORMATS:
+        if path.suffix.lower() in kind.suffixes:
+            return kind
+    known = ", ".join(suffix for kind in FORMATS for suffix in kind.suffixes)
+    found = f"the ending {path.suffix}" if path.suffix else "no ending"
+    raise PlanError(f"a file with {found} cannot be imported; known are {known}", origin=str(path))

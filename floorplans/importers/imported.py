@@ -1,0 +1,91 @@
+"""A plan that was imported, and what its file did not tell."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from floorplans.importers.draft import LayerUse, Origin
+from floorplans.plan import FloorPlan
+from floorplans.repair import Change
+from floorplans.toml_writer import dumps
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """A value that the file did not give: its key, the value as text, and why this one."""
+
+    key: str
+    value: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Imported:
+    """What came of a file.
+
+    Attributes
+    ----------
+    plan : FloorPlan
+    source_file : str
+        Name of the file it came from, without its folder.
+    origin : Origin
+        Where the plan's (0, 0) lies in the file.
+    assumed : tuple of Assumption
+        What the file did not tell.
+    layers : tuple of LayerUse
+        What became of each layer of the file.
+    changes : tuple of Change
+        What was mended to make walls meet and the outline close.
+    notes : tuple of str
+        What else the user should hear, one sentence each.
+    """
+
+    plan: FloorPlan
+    source_file: str
+    origin: Origin
+    assumed: tuple[Assumption, ...] = ()
+    layers: tuple[LayerUse, ...] = ()
+    changes: tuple[Change, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def report(self) -> tuple[str, ...]:
+        """Everything to tell about the import, a line each."""
+        return (
+            *(f"layer {use.name}: {use.n_objects} objects: {use.became}" for use in self.layers),
+            *(f"assumed {a.key} = {a.value}: {a.why}" for a in self.assumed),
+            *(str(change) for change in self.changes),
+            *self.notes,
+        )
+
+    def toml(self) -> str:
+        """Text of the plan's file, in which everything assumed says so in a comment."""
+        return "\n".join([*self._header(), "", *self._body()]) + "\n"
+
+    def _header(self) -> list[str]:
+        x, y = self.origin.x, self.origin.y
+        lines = [
+            f"# Imported from {self.source_file}",
+            f"# (0, 0) of this plan is ({x:.9g}, {y:.9g}) in {self.origin.frame}",
+        ]
+        keys = {line.split(" = ")[0] for line in self._lines()}
+        lines += [
+            f"# assumed: {a.key} = {a.value}: {a.why}" for a in self.assumed if a.key not in keys
+        ]
+        return [" ".join(line.split()) for line in lines]
+
+    def _body(self) -> list[str]:
+        """Lines of the plan; those before the first wall carry what was assumed of them."""
+        whys = {assumption.key: assumption.why for assumption in self.assumed}
+        lines = self._lines()
+        n_top = lines.index("[[walls]]")
+        top = [
+            f"{line}  # assumed: {' '.join(whys[key].split())}"
+            if (key := line.split(" = ")[0]) in whys
+            else line
+            for line in lines[:n_top]
+        ]
+        return top + lines[n_top:]
+
+    def _lines(self) -> list[str]:
+        return dumps(self.plan).splitlines()
