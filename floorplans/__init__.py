@@ -12,6 +12,7 @@ a material a face, `FloorPlan.solid_segments` tells where it is solid at a heigh
 """
 
 from floorplans.errors import PlanError
+from floorplans.georeference import GeoOrigin
 from floorplans.materials import MATERIAL_COLOURS, MATERIALS
 from floorplans.mesh import SheetMaterial, WallMesh
 from floorplans.plan import FloorPlan
@@ -23,6 +24,7 @@ __all__ = [
     "MATERIALS",
     "MATERIAL_COLOURS",
     "FloorPlan",
+    "GeoOrigin",
     "Opening",
     "OpeningKind",
     "Panel",

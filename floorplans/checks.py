@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.strtree import STRtree
 
 from floorplans.errors import Place, PlanError
+from floorplans.georeference import check_origin
 from floorplans.wall_checks import check_material, check_positive, check_wall
 from floorplans.walls import TOLERANCE_M, Wall, closed_intervals
 
@@ -30,6 +31,8 @@ def check_plan(plan: FloorPlan) -> None:
     _check_enclosure(plan)
     _check_source(plan)
     _check_start(plan)
+    if plan.origin is not None:
+        check_origin(plan.origin)
 
 
 def _check_name(name: str) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from floorplans.checks import check_plan
+from floorplans.georeference import GeoOrigin
 from floorplans.mesh import WallMesh, build_mesh
 from floorplans.toml_writer import dumps
 from floorplans.walls import Opening, Wall, solid_intervals
@@ -43,6 +44,8 @@ class FloorPlan:
         The cell centre (x, y) a search begins at [m].
     floor_thickness_m, ceiling_thickness_m : float
         Thickness of the slabs [m].
+    origin : GeoOrigin or None
+        Where on the Earth the plan lies; None where that is not known.
 
     Raises
     ------
@@ -60,6 +63,7 @@ class FloorPlan:
     start: tuple[float, float]
     floor_thickness_m: float = 0.2
     ceiling_thickness_m: float = 0.2
+    origin: GeoOrigin | None = None
 
     def __post_init__(self) -> None:
         check_plan(self)

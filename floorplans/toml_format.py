@@ -1,6 +1,7 @@
 """TOML <-> FloorPlan: the file format that docs/plan_format.md describes."""
 
 import tomllib
+from collections.abc import Mapping
 from importlib import resources
 from itertools import accumulate, pairwise
 from math import dist
@@ -9,6 +10,7 @@ from pathlib import Path
 from shapely.geometry import Polygon
 
 from floorplans.errors import Place, PlanError, format_place
+from floorplans.georeference import GeoOrigin
 from floorplans.plan import FloorPlan
 from floorplans.toml_table import Table, as_points
 from floorplans.toml_writer import FORMAT_VERSION, dumps
@@ -17,8 +19,10 @@ from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 
 PLAN_KEYS = (
     "name", "format", "height_m", "floor_material", "floor_thickness_m", "ceiling_material",
-    "ceiling_thickness_m", "source", "start", "outline", "holes", "defaults", "walls",
+    "ceiling_thickness_m", "source", "start", "outline", "holes", "origin", "defaults",
+    "walls",
 )  # fmt: skip
+ORIGIN_KEYS = ("longitude_deg", "latitude_deg", "rotation_deg")
 DEFAULTS_KEYS = ("material", "thickness_m")
 WALL_KEYS = ("points", "material", "thickness_m", "height_m", "openings")
 OPENING_KEYS = ("kind", "offset_m", "width_m", "sill_m", "head_m", "material", "thickness_m")
@@ -84,9 +88,16 @@ def loads(text: str, *, origin: str = "<text>") -> FloorPlan:
         When the text is not TOML, or the plan is wrong.
     """
     try:
-        return _read_plan(Table(tomllib.loads(text), PLAN_KEYS))
+        data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise PlanError(f"not valid TOML: {error}", origin=origin) from error
+    return from_data(data, origin=origin)
+
+
+def from_data(data: Mapping[str, object], *, origin: str = "<data>") -> FloorPlan:
+    """Make a plan of the keys and values of its TOML file; raise `PlanError` as `loads` does."""
+    try:
+        return _read_plan(Table(data, PLAN_KEYS))
     except PlanError as error:
         raise PlanError(error.problem, error.place, error.value, origin) from None
 
@@ -116,6 +127,7 @@ def _read_plan(table: Table) -> FloorPlan:
             start=(start_x, start_y),
             floor_thickness_m=table.number("floor_thickness_m", 0.2),
             ceiling_thickness_m=table.number("ceiling_thickness_m", 0.2),
+            origin=_read_origin(table),
         )
     except PlanError as error:
         place = _place_in_file(error.place, [len(walls) for walls in pieces])
@@ -137,6 +149,17 @@ def _read_outline(table: Table) -> Polygon:
         for index, hole in enumerate(table.items("holes"))
     ]
     return Polygon(shell, holes)
+
+
+def _read_origin(table: Table) -> GeoOrigin | None:
+    if "origin" not in table.data:
+        return None
+    origin = table.table("origin", ORIGIN_KEYS)
+    return GeoOrigin(
+        origin.number("longitude_deg"),
+        origin.number("latitude_deg"),
+        origin.number("rotation_deg", 0.0),
+    )
 
 
 def _ring(points: Corners, place: Place) -> Corners:

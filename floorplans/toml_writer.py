@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from shapely.geometry.polygon import LinearRing
 
+from floorplans.georeference import GeoOrigin
 from floorplans.walls import Opening, Wall
 
 if TYPE_CHECKING:
@@ -40,6 +41,15 @@ def _top_level(plan: FloorPlan) -> Iterator[str]:
     yield f"outline = {_ring(plan.outline.exterior)}"
     if plan.outline.interiors:
         yield "holes = [" + ", ".join(_ring(hole) for hole in plan.outline.interiors) + "]"
+    if plan.origin is not None:
+        yield f"origin = {{ {', '.join(_origin(plan.origin))} }}"
+
+
+def _origin(origin: GeoOrigin) -> Iterator[str]:
+    yield f"longitude_deg = {_number(origin.longitude_deg)}"
+    yield f"latitude_deg = {_number(origin.latitude_deg)}"
+    if origin.rotation_deg:
+        yield f"rotation_deg = {_number(origin.rotation_deg)}"
 
 
 def _wall(wall: Wall, ceiling_m: float) -> Iterator[str]:

@@ -7,7 +7,13 @@ from pathlib import Path
 import pytest
 
 import floorplans
-from floorplans.toml_format import DEFAULTS_KEYS, OPENING_KEYS, PLAN_KEYS, WALL_KEYS
+from floorplans.toml_format import (
+    DEFAULTS_KEYS,
+    OPENING_KEYS,
+    ORIGIN_KEYS,
+    PLAN_KEYS,
+    WALL_KEYS,
+)
 
 PAGE = (Path(__file__).parents[2] / "docs" / "plan_format.md").read_text(encoding="utf-8")
 
@@ -25,6 +31,7 @@ def test_example_is_a_plan_that_uses_every_key() -> None:
     openings = [o for wall in table["walls"] for o in wall.get("openings", [])]
     assert set(PLAN_KEYS) - set(table) == {"floor_thickness_m"}
     assert set(table["defaults"]) == set(DEFAULTS_KEYS)
+    assert set(table["origin"]) == set(ORIGIN_KEYS)
     assert {key for wall in table["walls"] for key in wall} == set(WALL_KEYS)
     assert {key for opening in openings for key in opening} == set(OPENING_KEYS)
 
@@ -37,7 +44,10 @@ def test_offsets_of_the_example_lie_where_its_comment_says() -> None:
     assert [o.kind for o in north.openings] == ["window"]
 
 
-@pytest.mark.parametrize("word", [*PLAN_KEYS, *WALL_KEYS, *OPENING_KEYS, *floorplans.MATERIALS])
+KEYS = (*PLAN_KEYS, *ORIGIN_KEYS, *WALL_KEYS, *OPENING_KEYS)
+
+
+@pytest.mark.parametrize("word", [*KEYS, *floorplans.MATERIALS])
 def test_page_explains_every_key_and_material(word: str) -> None:
     prose = re.sub(r"```.*?```", "", PAGE, flags=re.DOTALL)
     assert f"`{word}`" in prose
