@@ -5,15 +5,22 @@
 >>> radio_map = raytrace.RadioMap.load("scenario1.h5")
 >>> world = rssnav.GridWorld.from_map(plan, radio_map, speed=1)
 >>> result = rssnav.train(world, rssnav.RssAgent(), runs=100, episodes=1000, seed=0)
+
+Each name is imported when it is first asked for (PEP 562), so that ``rssnav --help`` and shell
+completion do not wait for numba.
 """
 
-from rssnav.agents import Agent, DecisionProcess, LocationAgent, QLearning, RssAgent
-from rssnav.planning import Path, Solution, greedy_path, shortest_path, value_iteration
-from rssnav.results import Schedule, TrainingResult
-from rssnav.states import ExactStates, Fluctuation, IntervalStates, ToleranceStates
-from rssnav.store import ResultFileError
-from rssnav.training import TrainingInterrupted, train
-from rssnav.world import ACTION_NAMES, ACTIONS, GridWorld, WorldError
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rssnav.agents import Agent, DecisionProcess, LocationAgent, QLearning, RssAgent
+    from rssnav.planning import Path, Solution, greedy_path, shortest_path, value_iteration
+    from rssnav.results import Schedule, TrainingResult
+    from rssnav.states import ExactStates, Fluctuation, IntervalStates, ToleranceStates
+    from rssnav.store import ResultFileError
+    from rssnav.training import TrainingInterrupted, train
+    from rssnav.world import ACTION_NAMES, ACTIONS, GridWorld, WorldError
 
 __all__ = [
     "ACTIONS",
@@ -40,3 +47,26 @@ __all__ = [
     "train",
     "value_iteration",
 ]
+
+_HOMES = {
+    "agents": ("Agent", "DecisionProcess", "LocationAgent", "QLearning", "RssAgent"),
+    "planning": ("Path", "Solution", "greedy_path", "shortest_path", "value_iteration"),
+    "results": ("Schedule", "TrainingResult"),
+    "states": ("ExactStates", "Fluctuation", "IntervalStates", "ToleranceStates"),
+    "store": ("ResultFileError",),
+    "training": ("TrainingInterrupted", "train"),
+    "world": ("ACTIONS", "ACTION_NAMES", "GridWorld", "WorldError"),
+}
+_HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_HOME_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,7 +1,7 @@
 """The command line ``rssnav``.
 
-One module a command. Results go to standard output, progress and notes to standard error; exit
-codes are 0 done, 1 could not be done, 2 wrong usage, 130 interrupted.
+One module a command, listed in `rssnav.cli.commands`. Results go to standard output, progress and
+notes to standard error; exit codes are 0 done, 1 could not be done, 2 wrong usage, 130 interrupted.
 """
 
 from importlib.metadata import version
@@ -9,8 +9,7 @@ from typing import Annotated
 
 import typer
 
-from rssnav.cli import doctor, experiments, paths, plan, radio_maps, train
-from rssnav.cli.failures import Commands
+from rssnav.cli.commands import Commands, list_in
 from rssnav.cli.options import examples
 
 app = typer.Typer(
@@ -26,12 +25,7 @@ app = typer.Typer(
         "rssnav experiments --quick",
     ),
 )
-plan.add_to(app)
-radio_maps.add_to(app)
-paths.add_to(app)
-train.add_to(app)
-experiments.add_to(app)
-doctor.add_to(app)
+list_in(app)
 
 
 def _print_version(wanted: bool) -> None:

@@ -1,39 +1,21 @@
 """Errors as people meet them: one line on standard error and an exit code, no traceback."""
 
 import sys
-from typing import Any
-
-import typer
-from typer.core import TyperGroup
-
-from floorplans import PlanError
-from raytrace import MapFileError, SceneError
-from rssnav import ResultFileError, WorldError
 
 COULD_NOT = 1
 INTERRUPTED = 130
 
-ANTICIPATED = (PlanError, SceneError, MapFileError, WorldError, ResultFileError, OSError)
-"""Errors that the user, not the program, can mend."""
-
 NOTHING_HALF = "interrupted; files are written whole or not at all, so nothing is left half-done"
 
 
-class Commands(TyperGroup):
-    """A group of commands that end with 0 done, 1 could not be done, 2 wrong usage, 130 Ctrl-C."""
+def is_anticipated(error: Exception) -> bool:
+    """Tell whether the user, not the program, can mend an error."""
+    from floorplans import PlanError
+    from raytrace import MapFileError, SceneError
+    from rssnav import ResultFileError, WorldError
 
-    def invoke(self, ctx: Any) -> Any:
-        """Run the command; turn anticipated errors into a message and an exit code."""
-        try:
-            return super().invoke(ctx)
-        except BrokenPipeError:
-            raise
-        except ANTICIPATED as error:
-            complain(describe(error))
-            raise typer.Exit(COULD_NOT) from error
-        except KeyboardInterrupt as interrupt:
-            complain(str(interrupt) or NOTHING_HALF)
-            raise typer.Exit(INTERRUPTED) from interrupt
+    mendable = (PlanError, SceneError, MapFileError, WorldError, ResultFileError, OSError)
+    return isinstance(error, mendable) and not isinstance(error, BrokenPipeError)
 
 
 def complain(message: str) -> None:

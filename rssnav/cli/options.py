@@ -5,10 +5,10 @@ from typing import Annotated
 
 import typer
 
-import floorplans
-
 
 def _complete_plan(incomplete: str) -> list[str]:
+    import floorplans
+
     return [name for name in floorplans.builtin_names() if name.startswith(incomplete)]
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import typer
 from typer.testing import CliRunner, Result
 
 from rssnav.cli import app
+from rssnav.cli.commands import COMMANDS, Commands
 
 ROOM = """
 name = "room"
@@ -46,6 +48,15 @@ def edited(old: str, new: str) -> str:
 def run(*arguments: object) -> Result:
     """Run ``rssnav`` in this process."""
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def whole_group() -> Commands:
+    """Return the group of all commands, each of them loaded."""
+    group = typer.main.get_command(app)
+    assert isinstance(group, Commands)
+    for name in COMMANDS:
+        group.load(name)
+    return group
 
 
 def done(*arguments: object) -> str:

@@ -7,10 +7,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-import typer
-from cli_plans import run
-
-from rssnav.cli import app
+from cli_plans import run, whole_group
 
 PAGE = (Path(__file__).parents[2] / "docs" / "cli.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^## rssnav ([a-z ]+)\n(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
@@ -29,7 +26,7 @@ def commands(group, words: tuple[str, ...] = ()) -> dict[str, object]:
     return found
 
 
-COMMANDS = commands(typer.main.get_command(app))
+COMMANDS = commands(whole_group())
 
 
 def examples(text: str) -> list[str]:
