@@ -1,10 +1,11 @@
 """A slow and plain ray tracer, to hold the fast one to: images of points in planes, by brute force.
 
-It knows triangles and nothing else, in three dimensions throughout: every sequence of planes is
-tried, every point of reflection must lie on a triangle of its plane, and no triangle may stand
-between two points. Edges are found by looking which triangles meet along a line; a diffracted
-path crosses its edge where both sides make the same angle with it (Keller's law), after all
-reflections have been undone. What each path's field is, is the matter of `reference_field`.
+It knows triangles and nothing else, in three dimensions throughout: every sequence of planes that
+a ray could follow is tried, every point of reflection must lie on a triangle of its plane, and no
+triangle may stand between two points. Edges are found by looking which triangles meet along a
+line; a diffracted path crosses its edge where both sides make the same angle with it (Keller's
+law), after all reflections have been undone. What each path's field is, is the matter of
+`reference_field`.
 """
 
 from collections.abc import Iterator, Sequence
@@ -107,6 +108,21 @@ class Facets:
         first = np.unique(self.plane_of, return_index=True)[1]
         normals = self.normals[first]
         return normals, (normals * self.triangles[first, 0]).sum(axis=1)
+
+    @cached_property
+    def rectangles(self) -> Floats:
+        """(n_planes, 4, 3) corners, in turn, of a rectangle around each plane's triangles."""
+        found = []
+        for plane, normal in enumerate(self.planes[0]):
+            corners = self.triangles[self.plane_of == plane].reshape(-1, 3)
+            u = _across(normal)
+            v = np.cross(normal, u)
+            (u0, u1), (v0, v1) = ((c.min(), c.max()) for c in (corners @ u, corners @ v))
+            foot = (corners[0] @ normal) * normal
+            found.append(
+                [foot + a * u + b * v for a, b in ((u0, v0), (u1, v0), (u1, v1), (u0, v1))]
+            )
+        return np.array(found)
 
     def containing(self, points: Floats) -> Mask:
         """(n_points, n_triangles) whether a point lies in a triangle, its rim included."""
@@ -211,13 +227,6 @@ def _lines(triangles: Floats) -> list[tuple[Floats, Floats]]:
     return lines
 
 
-def sequences(n_planes: int, order: int) -> Ints:
-    """(n, order) every sequence of planes without the same one twice in a row."""
-    every = np.array(list(product(range(n_planes), repeat=order)), dtype=np.int64)
-    every = every.reshape(n_planes**order, order)
-    return every[(every[:, 1:] != every[:, :-1]).all(axis=1)]
-
-
 class Legs(NamedTuple):
     """Candidates for one side of paths.
 
@@ -234,19 +243,64 @@ class Legs(NamedTuple):
         return Legs(self.begin[rows], self.planes[rows], self.images[rows])
 
 
-def legs_from(facets: Facets, points: Floats, order: int) -> Legs:
-    """All sequences of planes from points (n, 3), and their images."""
+def legs_from(facets: Facets, points: Floats, order: int, *, prune: bool = True) -> list[Legs]:
+    """All sequences of planes from points (n, 3), and their images.
+
+    Returns
+    -------
+    list of Legs
+        Those of 0 reflections, of 1, ... of `order`. With `prune`, those that end at a plane
+        that no ray of theirs can meet are left out, and all that would go on from there.
+    """
     normals, offsets = facets.planes
-    every = sequences(len(offsets), order)
-    begin = np.repeat(np.arange(len(points)), len(every))
-    planes = np.tile(every, (len(points), 1))
-    images = np.empty((len(planes), order + 1, 3))
-    images[:, 0] = points[begin]
-    for k in range(order):
-        normal, before = normals[planes[:, k]], images[:, k]
-        height = (before * normal).sum(axis=1) - offsets[planes[:, k]]
-        images[:, k + 1] = before - 2.0 * height[:, None] * normal
-    return Legs(begin, planes, images)
+    n = len(points)
+    legs = [Legs(np.arange(n), np.empty((n, 0), np.int64), points[:, None])]
+    for _ in range(order):
+        last = legs[-1]
+        may = _differs_from_last(last, len(offsets))
+        if prune:
+            may &= might_reach(facets, last, facets.rectangles)
+        row, plane = np.nonzero(may)
+        normal, before = normals[plane], last.images[row, -1]
+        height = (before * normal).sum(axis=1) - offsets[plane]
+        image = before - 2.0 * height[:, None] * normal
+        planes = np.column_stack([last.planes[row], plane])
+        images = np.concatenate([last.images[row], image[:, None]], axis=1)
+        legs.append(Legs(last.begin[row], planes, images))
+    return legs
+
+
+def _differs_from_last(legs: Legs, n_planes: int) -> Mask:
+    """(n_legs, n_planes): no plane reflects twice in a row."""
+    may = np.ones((len(legs.planes), n_planes), dtype=bool)
+    if legs.planes.shape[1]:
+        may[np.arange(len(may)), legs.planes[:, -1]] = False
+    return may
+
+
+def might_reach(facets: Facets, legs: Legs, targets: Floats) -> Mask:
+    """(n_legs, n_targets) False where no ray of a leg can meet a target, the hull of its corners.
+
+    Behind its last plane a ray is on that plane's reflecting side, and within the pyramid from the
+    last image through the rectangle around the plane's triangles. A target is out of reach if all
+    its corners (n_targets, n_corners, 3) are behind the plane, or outside one face of the pyramid.
+    """
+    reach = np.ones((len(legs.planes), len(targets)), dtype=bool)
+    if not legs.planes.shape[1]:
+        return reach
+    normals, offsets = facets.planes
+    plane, image = legs.planes[:, -1], legs.images[:, -1]
+    behind = (image * normals[plane]).sum(axis=1) - offsets[plane]
+    corners = facets.rectangles[plane] - image[:, None]
+    faces = np.cross(corners, np.roll(corners, -1, axis=1))
+    inside = (faces * corners.mean(axis=1)[:, None]).sum(axis=2)
+    faces *= np.sign(inside)[:, :, None]
+    for k, target in enumerate(targets):
+        side = (target @ normals.T - offsets)[:, plane] * np.sign(behind)
+        reach[:, k] &= side.min(axis=0) < TOUCHING_M
+        off = np.einsum("nfi,nci->nfc", faces, target - image[:, None])
+        reach[:, k] &= (off.max(axis=2) > -TOUCHING_M).all(axis=1)
+    return reach
 
 
 def trace_back(facets: Facets, legs: Legs, targets: Floats) -> tuple[Ints, Floats]:
@@ -288,7 +342,13 @@ def unblocked(facets: Facets, points: Floats) -> Ints:
 
 
 def find_paths(
-    facets: Facets, source: Floats, receivers: Floats, max_reflections: int, max_diffractions: int
+    facets: Facets,
+    source: Floats,
+    receivers: Floats,
+    max_reflections: int,
+    max_diffractions: int,
+    *,
+    prune: bool = True,
 ) -> Found:
     """Find every path with at most that many reflections, and one diffraction or none.
 
@@ -304,27 +364,40 @@ def find_paths(
         Most reflections, on both sides of a diffraction together.
     max_diffractions
         0 or 1.
+    prune
+        Leave out sequences of planes that no ray can follow; the paths do not depend on it.
     """
-    orders = range(max_reflections + 1)
     most = max_reflections + max_diffractions
-    forth = [legs_from(facets, source[None], n) for n in orders]
+    forth = legs_from(facets, source[None], max_reflections, prune=prune)
     parts = [_reflected(facets, receivers, legs, most) for legs in forth]
     if max_diffractions:
-        back = [legs_from(facets, receivers, n) for n in orders]
-        for edge, n_in, n_out in product(facets.edges, orders, orders):
-            if n_in + n_out <= max_reflections:
-                parts.append(_diffracted(facets, edge, forth[n_in], back[n_out], most))
+        back = legs_from(facets, receivers, max_reflections, prune=prune)
+        for edge in facets.edges:
+            parts += _over_edge(facets, edge, (forth, back), most)
     return Found(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
 def _reflected(facets: Facets, receivers: Floats, legs: Legs, most: int) -> Found:
     """Paths to every receiver that are only reflected."""
-    n, order = legs.planes.shape
-    every = legs.rows(np.tile(np.arange(n), len(receivers)))
-    number = np.repeat(np.arange(len(receivers)), n)
-    rows, points = trace_back(facets, every, receivers[number])
+    order = legs.planes.shape[1]
+    leg, number = np.nonzero(might_reach(facets, legs, receivers[:, None]))
+    rows, points = trace_back(facets, legs.rows(leg), receivers[number])
     free = unblocked(facets, points)
     return _padded(number[rows[free]], [REFLECTION] * order, points[free], most)
+
+
+def _over_edge(
+    facets: Facets, edge: Edge, legs: tuple[list[Legs], list[Legs]], most: int
+) -> Iterator[Found]:
+    """Paths over an edge with one reflection less than `most` at most."""
+    ends = np.array([[edge.start, edge.end]])
+    forth, back = (
+        [some.rows(np.flatnonzero(might_reach(facets, some, ends)[:, 0])) for some in side]
+        for side in legs
+    )
+    for n_in, n_out in product(range(most), repeat=2):
+        if n_in + n_out < most:
+            yield _diffracted(facets, edge, forth[n_in], back[n_out], most)
 
 
 def _diffracted(facets: Facets, edge: Edge, forth: Legs, back: Legs, most: int) -> Found:
