@@ -15,6 +15,7 @@ from floorplans.errors import PlanError
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import MATERIAL_COLOURS, MATERIALS
 from floorplans.mesh import SheetMaterial, WallMesh
+from floorplans.office import generate_office
 from floorplans.plan import FloorPlan
 from floorplans.toml_format import builtin_names, load, loads, save
 from floorplans.toml_writer import dumps
@@ -34,6 +35,7 @@ __all__ = [
     "WallMesh",
     "builtin_names",
     "dumps",
+    "generate_office",
     "load",
     "loads",
     "panels",
