@@ -24,9 +24,18 @@ _RULES = {
 
 
 class Learner(Protocol):
-    """A Q-table that learns by flying episodes."""
+    """A Q-table that learns by flying episodes.
+
+    Attributes
+    ----------
+    run : Run
+        Everything it has learnt and counted.
+    trace : (max_steps,) int32, or None
+        Where it is to write the states that an episode arrives at; the latest episode stays.
+    """
 
     run: Run
+    trace: NDArray[np.int32] | None
 
     def advance(self, until_episode: int) -> None:
         """Fly to ``until_episode``, or to the episode in which the run converges."""
@@ -167,6 +176,8 @@ def _initial_q(problem: LearningProblem) -> NDArray[np.float64]:
 class TabularLearner:
     """Q-learning with one row of Q per cell."""
 
+    trace: NDArray[np.int32] | None = None
+
     def __init__(
         self, problem: LearningProblem, generators: NDArray[np.uint64], episodes: int
     ) -> None:
@@ -191,6 +202,7 @@ class TabularLearner:
             self.greedy,
             self.run.tie_generator if self.parameters.random_ties else None,
             until_episode,
+            self.trace,
         )
 
     def cell_values(self) -> NDArray[np.float64]:
@@ -204,6 +216,8 @@ class TabularLearner:
 
 class TemporalDifferenceLearner:
     """Q-learning, SARSA or Double Q-learning with one row per cell, by the slower loop."""
+
+    trace: NDArray[np.int32] | None = None
 
     def __init__(
         self,
@@ -231,6 +245,7 @@ class TemporalDifferenceLearner:
             self._rule,
             self.run.tie_generator if self.parameters.random_ties else None,
             until_episode,
+            self.trace,
         )
 
     def cell_values(self) -> NDArray[np.float64]:
@@ -245,6 +260,8 @@ class TemporalDifferenceLearner:
 
 class SensedLearner:
     """A row of Q per label, labels made from the readings."""
+
+    trace: NDArray[np.int32] | None = None
 
     def __init__(
         self,
@@ -276,6 +293,7 @@ class SensedLearner:
             self.run,
             self._book,
             until_episode,
+            self.trace,
         )
 
     def cell_values(self) -> NDArray[np.float64]:

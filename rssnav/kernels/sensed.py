@@ -143,7 +143,12 @@ def _greedy(moves: Moves, parameters: Parameters, run: Run, label: int, cell: in
 
 @jit()
 def _fly_episode(
-    moves: Moves, sensor: Sensor, parameters: Parameters, run: Run, book: Book
+    moves: Moves,
+    sensor: Sensor,
+    parameters: Parameters,
+    run: Run,
+    book: Book,
+    trace: NDArray[np.int32] | None,
 ) -> tuple[int, int, np.uint64, bool]:
     """Fly and learn from the start to the goal or the cap.
 
@@ -177,6 +182,8 @@ def _fly_episode(
         q[entry] = (1.0 - rates[1]) * q[entry] + rates[1] * (reward + parameters.gamma * value)
         path_hash = extended_hash(path_hash, np.uint64(choice))
         diagonal += choice & 1
+        if trace is not None:
+            trace[steps] = arrived
         steps += 1
         run.visits[arrived] += 1
         cell, label, reading = arrived, next_label, next_reading
@@ -185,14 +192,25 @@ def _fly_episode(
 
 @jit()
 def learn(
-    moves: Moves, sensor: Sensor, parameters: Parameters, run: Run, book: Book, until_episode: int
+    moves: Moves,
+    sensor: Sensor,
+    parameters: Parameters,
+    run: Run,
+    book: Book,
+    until_episode: int,
+    trace: NDArray[np.int32] | None = None,
 ) -> None:
-    """Go on learning to ``until_episode``, or to the episode in which the run converges."""
+    """Go on learning to ``until_episode``, or to the episode in which the run converges.
+
+    ``trace`` (max_steps,) takes the states an episode arrives at, each episode over the last.
+    """
     rates, converged = run.rates, False
     while run.counters[EPISODE] < until_episode and not converged:
         rates[0] = decayed(rates[0], parameters.epsilon_min, parameters.episode_decay)
         rates[1] = decayed(rates[1], parameters.alpha_min, parameters.episode_decay)
-        steps, diagonal, path_hash, terminated = _fly_episode(moves, sensor, parameters, run, book)
+        steps, diagonal, path_hash, terminated = _fly_episode(
+            moves, sensor, parameters, run, book, trace
+        )
         converged = close_episode(
             run.counters, run.episodes, steps, diagonal, path_hash, terminated
         )

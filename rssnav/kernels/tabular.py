@@ -95,11 +95,13 @@ def learn(
     greedy: Greedy,
     ties: NDArray[np.uint64] | None,
     until_episode: int,
+    trace: NDArray[np.int32] | None = None,
 ) -> None:
     """Go on learning to ``until_episode``, or to the episode in which the run converges.
 
     ``ties`` is the generator that breaks ties at random, None to take the first greedy action:
-    numba compiles the loop anew for each, without the other's code.
+    numba compiles the loop anew for each, without the other's code. So it does for ``trace``,
+    (max_steps,), which takes the states an episode arrives at, each episode over the last.
     """
     next_state, terminal, q, visits = moves.next_state, moves.terminal, run.q, run.visits
     possible, n_possible = moves.possible, moves.n_possible
@@ -138,6 +140,8 @@ def learn(
             )
             path_hash = extended_hash(path_hash, action)
             diagonal += action & _1
+            if trace is not None:
+                trace[steps] = arrived
             steps += 1
             visits[there] += 1
             state = there

@@ -90,6 +90,7 @@ def _fly_episode(
     run: Run,
     rule: int,
     ties: NDArray[np.uint64] | None,
+    trace: NDArray[np.int32] | None,
 ) -> tuple[int, int, np.uint64, bool]:
     """Fly and learn from the start to the goal or the cap.
 
@@ -123,6 +124,8 @@ def _fly_episode(
         q[learning + entry] = (1.0 - rates[1]) * q[learning + entry] + rates[1] * target
         path_hash = extended_hash(path_hash, np.uint64(action))
         diagonal += action & 1
+        if trace is not None:
+            trace[steps] = arrived
         steps += 1
         run.visits[arrived] += 1
         state = arrived
@@ -138,14 +141,18 @@ def learn(
     rule: int,
     ties: NDArray[np.uint64] | None,
     until_episode: int,
+    trace: NDArray[np.int32] | None = None,
 ) -> None:
-    """Go on learning to ``until_episode``, or to the episode in which the run converges."""
+    """Go on learning to ``until_episode``, or to the episode in which the run converges.
+
+    ``trace`` (max_steps,) takes the states an episode arrives at, each episode over the last.
+    """
     rates, converged = run.rates, False
     while run.counters[EPISODE] < until_episode and not converged:
         rates[0] = decayed(rates[0], parameters.epsilon_min, parameters.episode_decay)
         rates[1] = decayed(rates[1], parameters.alpha_min, parameters.episode_decay)
         steps, diagonal, path_hash, terminated = _fly_episode(
-            moves, reward, parameters, run, rule, ties
+            moves, reward, parameters, run, rule, ties, trace
         )
         converged = close_episode(
             run.counters, run.episodes, steps, diagonal, path_hash, terminated
