@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
+import numpy as np
 import shapely
 from shapely.geometry import LineString, MultiLineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -92,11 +93,14 @@ def _check_no_double_walls(walls: tuple[Wall, ...]) -> None:
 
 def _check_enclosure(plan: FloorPlan) -> None:
     """Raise unless walls without unfilled openings, floor to ceiling, cover the outline's edge."""
+    edge = plan.outline.boundary
+    full = [wall for wall in plan.walls if wall.height_m > plan.height_m - TOLERANCE_M]
+    lines = np.array([LineString([wall.start, wall.end]) for wall in full], dtype=np.object_)
+    near = np.flatnonzero(shapely.dwithin(lines, edge, 2 * TOLERANCE_M))
     closed = [
-        LineString([wall.point_at(low), wall.point_at(high)])
-        for wall in plan.walls
-        if wall.height_m > plan.height_m - TOLERANCE_M
-        for low, high in closed_intervals(wall)
+        LineString([full[k].point_at(low), full[k].point_at(high)])
+        for k in near
+        for low, high in closed_intervals(full[k])
     ]
     cover = shapely.union_all(closed).buffer(2 * TOLERANCE_M)
     for ring in (plan.outline.exterior, *plan.outline.interiors):
