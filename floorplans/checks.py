@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiLineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.strtree import STRtree
@@ -79,7 +81,7 @@ def _check_walls_inside(plan: FloorPlan) -> None:
 
 
 def _check_no_double_walls(walls: tuple[Wall, ...]) -> None:
-    lines = [LineString([wall.start, wall.end]) for wall in walls]
+    lines = _centre_lines(walls)
     for first, second in STRtree(lines).query(lines, predicate="intersects").T:
         if first < second:
             shared = lines[first].intersection(lines[second])
@@ -95,8 +97,7 @@ def _check_enclosure(plan: FloorPlan) -> None:
     """Raise unless walls without unfilled openings, floor to ceiling, cover the outline's edge."""
     edge = plan.outline.boundary
     full = [wall for wall in plan.walls if wall.height_m > plan.height_m - TOLERANCE_M]
-    lines = np.array([LineString([wall.start, wall.end]) for wall in full], dtype=np.object_)
-    near = np.flatnonzero(shapely.dwithin(lines, edge, 2 * TOLERANCE_M))
+    near = np.flatnonzero(shapely.dwithin(_centre_lines(full), edge, 2 * TOLERANCE_M))
     closed = [
         LineString([full[k].point_at(low), full[k].point_at(high)])
         for k in near
@@ -150,6 +151,10 @@ def _check_inside(plan: FloorPlan, point: tuple[float, float], key: str, value: 
 def _in_wall(plan: FloorPlan, point: tuple[float, float], height_m: float) -> bool:
     walls = MultiLineString(list(plan.solid_segments(height_m)))
     return Point(point).distance(walls) < TOLERANCE_M
+
+
+def _centre_lines(walls: Sequence[Wall]) -> NDArray[np.object_]:
+    return np.array([LineString([wall.start, wall.end]) for wall in walls], dtype=np.object_)
 
 
 def _lines(geometry: BaseGeometry) -> list[LineString]:
