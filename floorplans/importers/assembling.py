@@ -59,6 +59,7 @@ def assemble(draft: Draft, options: ImportOptions, source_file: str) -> Imported
         ceiling_material=options.ceiling_material or draft.ceiling_material or SLAB_MATERIAL,
         source=options.source or (inside.x, inside.y, min(1.5, height_m / 2)),
         start=(x, y),
+        origin=draft.georeference,
     )
     assumed = (Assumption("source", str(plan.source), "inside the outline"),)
     origin = draft.origin or Origin(0.0, 0.0, "the file, in metres")

@@ -12,6 +12,7 @@ from math import hypot
 
 from shapely.geometry import Polygon
 
+from floorplans.georeference import GeoOrigin
 from floorplans.walls import OpeningKind, Point
 
 
@@ -172,6 +173,8 @@ class Draft:
     floor_material, ceiling_material : str or None
     origin : Origin or None
         None where coordinates are the file's own: the plan is then moved to (0, 0), and told.
+    georeference : GeoOrigin or None
+        Where on the Earth the draft's (0, 0) lies; None where that is not known.
     layers : tuple of LayerUse
     notes : tuple of str
         What else the user should hear, one sentence each.
@@ -185,5 +188,6 @@ class Draft:
     floor_material: str | None = None
     ceiling_material: str | None = None
     origin: Origin | None = None
+    georeference: GeoOrigin | None = None
     layers: tuple[LayerUse, ...] = ()
     notes: tuple[str, ...] = ()

@@ -11,10 +11,14 @@ from floorplans.errors import PlanError
 from floorplans.importers.assembling import assemble
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported
+from floorplans.plan import FloorPlan
 
-Reader = Callable[[Path, ImportOptions], Draft]
+Reader = Callable[[Path, ImportOptions], Draft | FloorPlan]
+"""Gives a whole plan only for a file that holds one, such as one that rssnav exported."""
 
 _HEAD_BYTES = 4096
+_FOLDER_AS = ".imdf"
+_ZIP = b"PK\x03\x04"
 _PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -50,7 +54,7 @@ def _is_dxf(head: bytes) -> bool:
 
 
 def _is_json(head: bytes) -> bool:
-    return head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"{"
+    return head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"{" or head.startswith(_ZIP)
 
 
 def _is_ros_map(head: bytes) -> bool:
@@ -63,7 +67,10 @@ def _is_ifc(head: bytes) -> bool:
 
 FORMATS = (
     Format("DXF drawing", (".dxf",), "dxf", "read_dxf", _is_dxf),
-    Format("GeoJSON or IMDF", (".geojson", ".json"), "geojson", "read_geojson", _is_json),
+    Format(
+        "GeoJSON or IMDF", (".geojson", ".json", ".zip", ".imdf"), "geojson", "read_geojson",
+        _is_json,
+    ),
     Format(
         "ROS map_server map", (".yaml", ".yml", ".pgm", ".png"), "ros_map", "read_ros_map",
         _is_ros_map,
@@ -79,7 +86,7 @@ def import_plan(path: str | Path, options: ImportOptions | None = None) -> Impor
     Parameters
     ----------
     path : str or Path
-        Its ending names the format; see `FORMATS`.
+        Its ending names the format; see `FORMATS`. A folder is read as an IMDF venue.
     options : ImportOptions, optional
         What the user knows better than the file.
 
@@ -95,16 +102,21 @@ def import_plan(path: str | Path, options: ImportOptions | None = None) -> Impor
     options = options or ImportOptions()
     path = Path(path)
     try:
-        return assemble(read_draft(path, options), options, path.name)
+        drafted = read_draft(path, options)
+        if isinstance(drafted, FloorPlan):
+            return Imported.whole(drafted, options, path.name)
+        return assemble(drafted, options, path.name)
     except PlanError as error:
         raise PlanError(
             error.problem, error.place, error.value, error.origin or str(path)
         ) from error
 
 
-def read_draft(path: Path, options: ImportOptions) -> Draft:
+def read_draft(path: Path, options: ImportOptions) -> Draft | FloorPlan:
     """Read a file with the reader of its format."""
     kind = _format_of(path)
+    if path.is_dir():
+        return kind.reader()(path, options)
     try:
         with path.open("rb") as file:
             head = file.read(_HEAD_BYTES)
@@ -123,8 +135,9 @@ def read_draft(path: Path, options: ImportOptions) -> Draft:
 
 
 def _format_of(path: Path) -> Format:
+    suffix = _FOLDER_AS if path.is_dir() else path.suffix.lower()
     for kind in FORMATS:
-        if path.suffix.lower() in kind.suffixes:
+        if suffix in kind.suffixes:
             return kind
     known = ", ".join(suffix for kind in FORMATS for suffix in kind.suffixes)
     found = f"the ending {path.suffix}" if path.suffix else "no ending"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from floorplans.importers.draft import LayerUse, Origin
+from floorplans.importers.draft import ImportOptions, LayerUse, Origin
 from floorplans.plan import FloorPlan
 from floorplans.repair import Change
 from floorplans.toml_writer import dumps
@@ -47,6 +47,16 @@ class Imported:
     layers: tuple[LayerUse, ...] = ()
     changes: tuple[Change, ...] = ()
     notes: tuple[str, ...] = ()
+
+    @classmethod
+    def whole(cls, plan: FloorPlan, options: ImportOptions, source_file: str) -> Imported:
+        """Take a plan from a file that holds all of one; only what options name is replaced."""
+        given = {
+            key: getattr(options, key)
+            for key in ("name", "floor_material", "ceiling_material", "source", "start")
+            if getattr(options, key) is not None
+        }
+        return cls(replace(plan, **given), source_file, Origin(0.0, 0.0, "the file, in metres"))
 
     @property
     def report(self) -> tuple[str, ...]:
