@@ -1,0 +1,139 @@
+"""Which function renders a plan in which format, and the writing of what it renders."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from floorplans.errors import PlanError, unknown_name
+from floorplans.plan import FloorPlan
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    """What a user may choose about an exported file.
+
+    Attributes
+    ----------
+    resolution_m : float
+        Side of a pixel of an occupancy grid [m].
+    slice_height_m : float or None
+        Height above the floor at which an occupancy grid looks at the walls [m]; None is 1 m, or
+        half the storey's height where that is less.
+    """
+
+    resolution_m: float = 0.05
+    slice_height_m: float | None = None
+
+
+Files = Mapping[str, bytes]
+"""Path below the folder of the exported file -> content."""
+
+Renderer = Callable[[FloorPlan, Path, ExportOptions], Files]
+"""Takes the plan, the path of the main file, and the options."""
+
+
+@dataclass(frozen=True)
+class Format:
+    """A kind of file that a plan can be written as.
+
+    Attributes
+    ----------
+    name : str
+        As one word, for ``--format``.
+    title : str
+    suffixes : tuple of str
+        In lower case, with the dot.
+    module, function : str
+        The renderer; its module is loaded when it is needed.
+    """
+
+    name: str
+    title: str
+    suffixes: tuple[str, ...]
+    module: str
+    function: str
+
+    def renderer(self) -> Renderer:
+        """Load the renderer."""
+        return getattr(import_module(f"floorplans.exporters.{self.module}"), self.function)
+
+
+FORMATS = (
+    Format("geojson", "GeoJSON", (".geojson", ".json"), "geojson", "render_geojson"),
+    Format("dxf", "DXF drawing", (".dxf",), "dxf", "render_dxf"),
+    Format("ros", "ROS map_server map", (".yaml", ".pgm"), "ros_map", "render_ros_map"),
+)
+"""All formats a plan can be written as."""
+
+
+def export(
+    plan: FloorPlan,
+    path: str | Path,
+    format: str | None = None,
+    options: ExportOptions | None = None,
+) -> tuple[Path, ...]:
+    """Write a plan in the format of another program.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+    path : str or Path
+        Its ending names the format where `format` does not.
+    format : str, optional
+        Name of one of `FORMATS`.
+    options : ExportOptions, optional
+
+    Returns
+    -------
+    tuple of Path
+        All files written, the main one first.
+
+    Raises
+    ------
+    PlanError
+        When the format is unknown, or cannot hold this plan with these options.
+    """
+    path = Path(path)
+    files = render(plan, path, format, options or ExportOptions())
+    return _write_all({path.parent / name: content for name, content in files.items()})
+
+
+def render(plan: FloorPlan, path: Path, format: str | None, options: ExportOptions) -> Files:
+    """Render a plan as `export` does, without writing it."""
+    return format_of(path, format).renderer()(plan, path, options)
+
+
+def format_of(path: Path, name: str | None = None) -> Format:
+    """Find a format by its name, or by the ending of a path; raise `PlanError` if there is none."""
+    for kind in FORMATS:
+        if kind.name == name or (name is None and path.suffix.lower() in kind.suffixes):
+            return kind
+    if name is not None:
+        raise PlanError(unknown_name("format", name, tuple(kind.name for kind in FORMATS)))
+    known = ", ".join(suffix for kind in FORMATS for suffix in kind.suffixes)
+    raise PlanError(
+        f"no format has the ending {path.suffix!r}; known are {known}", origin=str(path)
+    )
+
+
+def _write_all(files: Mapping[Path, bytes]) -> tuple[Path, ...]:
+    """Write all files beside their places first, and move them there when all are whole."""
+    beside = {path: path.with_name(f".{path.name}.{os.getpid()}.part") for path in files}
+    try:
+        for path, content in files.items():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            beside[path].write_bytes(content)
+        for path, part in beside.items():
+            os.replace(part, path)
+    except OSError as error:
+        raise PlanError(
+            f"the file cannot be written: {error.strerror}", origin=str(next(iter(files)))
+        ) from error
+    finally:
+        for part in beside.values():
+            part.unlink(missing_ok=True)
+    return tuple(files)
