@@ -82,7 +82,7 @@ def _check_walls_inside(plan: FloorPlan) -> None:
 
 def _check_no_double_walls(walls: tuple[Wall, ...]) -> None:
     lines = _centre_lines(walls)
-    for first, second in STRtree(lines).query(lines, predicate="intersects").T:
+    for first, second in STRtree(_array(lines)).query(_array(lines), predicate="intersects").T:
         if first < second:
             shared = lines[first].intersection(lines[second])
             if shared.length > TOLERANCE_M:
@@ -97,7 +97,7 @@ def _check_enclosure(plan: FloorPlan) -> None:
     """Raise unless walls without unfilled openings, floor to ceiling, cover the outline's edge."""
     edge = plan.outline.boundary
     full = [wall for wall in plan.walls if wall.height_m > plan.height_m - TOLERANCE_M]
-    near = np.flatnonzero(shapely.dwithin(_centre_lines(full), edge, 2 * TOLERANCE_M))
+    near = np.flatnonzero(shapely.dwithin(_array(_centre_lines(full)), edge, 2 * TOLERANCE_M))
     closed = [
         LineString([full[k].point_at(low), full[k].point_at(high)])
         for k in near
@@ -153,8 +153,12 @@ def _in_wall(plan: FloorPlan, point: tuple[float, float], height_m: float) -> bo
     return Point(point).distance(walls) < TOLERANCE_M
 
 
-def _centre_lines(walls: Sequence[Wall]) -> NDArray[np.object_]:
-    return np.array([LineString([wall.start, wall.end]) for wall in walls], dtype=np.object_)
+def _centre_lines(walls: Sequence[Wall]) -> list[LineString]:
+    return [LineString([wall.start, wall.end]) for wall in walls]
+
+
+def _array(lines: list[LineString]) -> NDArray[np.object_]:
+    return np.array(lines, dtype=np.object_)  # of this type also when there is none
 
 
 def _lines(geometry: BaseGeometry) -> list[LineString]:
