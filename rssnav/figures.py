@@ -2,12 +2,15 @@
 
 Figures are made with matplotlib's objects (no pyplot, no global figure), at the widths of a
 two-column IEEE page, in 8 pt type. An agent has the same colour in every figure; maps are in
-viridis. Both stay apart for colour-blind readers and in print.
+viridis. Both stay apart for colour-blind readers and in print. PDF embeds its fonts, SVG keeps its
+text as text. `chosen_style` lays a matplotlib style over all that.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager, nullcontext
+from contextvars import ContextVar
 from functools import wraps
 from io import BytesIO
 from pathlib import Path
@@ -23,8 +26,11 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
+from matplotlib.style import available, context
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
+
+from rssnav.files import whole_file
 
 if TYPE_CHECKING:
     from floorplans import FloorPlan
@@ -78,24 +84,79 @@ STYLE: dict[Any, Any] = {
     "grid.linewidth": 0.4,
     "image.interpolation": "nearest",
     "pdf.fonttype": 42,
+    "svg.fonttype": "none",
     "figure.constrained_layout.h_pad": 0.07,
     "figure.constrained_layout.w_pad": 0.04,
     "savefig.facecolor": "white",
     "svg.hashsalt": "rssnav",
 }
 
+_NO_DATE: dict[str, dict[str, None]] = {
+    ".png": {"Software": None},
+    ".svg": {"Date": None},
+    ".pdf": {"CreationDate": None},
+}
+
 P = ParamSpec("P")
+
+_CHOSEN: ContextVar[str | None] = ContextVar("matplotlib style", default=None)
+
+
+@contextmanager
+def chosen_style(style: str | None) -> Generator[None]:
+    """Draw all figures of a block in a style of the user's, laid over the project's own.
+
+    Parameters
+    ----------
+    style : str or None
+        Name of a matplotlib style, ``package.name`` of an installed one, or the path of a
+        ``.mplstyle`` file; None for the project's style alone.
+
+    Raises
+    ------
+    ValueError
+        For a style that there is not.
+    """
+    if style is not None:
+        check_style(style)
+    token = _CHOSEN.set(style)
+    try:
+        yield
+    finally:
+        _CHOSEN.reset(token)
+
+
+def check_style(style: str) -> None:
+    """Raise ValueError unless matplotlib knows a style; nothing is fetched from a network."""
+    try:
+        if "://" in style:
+            raise OSError
+        with context(style):
+            return
+    except OSError as error:
+        raise ValueError(
+            f"{style!r} is no matplotlib style; give the path of a .mplstyle file, or one of "
+            f"{', '.join(name for name in available if not name.startswith('_'))}"
+        ) from error
+
+
+@contextmanager
+def drawing() -> Generator[None]:
+    """Set matplotlib up for drawing or writing a figure: the project's style, then the chosen."""
+    style = _CHOSEN.get()
+    with rc_context(STYLE), nullcontext() if style is None else context(style):
+        yield
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     """Decorate a function that draws a figure, so that it draws in the project's style."""
 
     @wraps(draw)
-    def drawing(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        with rc_context(STYLE):
+    def draw_in_style(*args: P.args, **kwargs: P.kwargs) -> Figure:
+        with drawing():
             return draw(*args, **kwargs)
 
-    return drawing
+    return draw_in_style
 
 
 def new_figure(width_in: float, height_in: float, *, maps: bool = False) -> Figure:
@@ -107,9 +168,15 @@ def new_figure(width_in: float, height_in: float, *, maps: bool = False) -> Figu
 def png_bytes(figure: Figure, dpi: float = DPI) -> bytes:
     """Return a figure as a PNG file's content."""
     buffer = BytesIO()
-    with rc_context(STYLE):
+    with drawing():
         figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
     return buffer.getvalue()
+
+
+def save_picture(figure: Figure, path: str | Path) -> None:
+    """Write a figure to a file (.png, .svg or .pdf), whole or not at all."""
+    with whole_file(path) as beside, drawing():
+        figure.savefig(beside, dpi=DPI, metadata=_NO_DATE[beside.suffix.lower()])
 
 
 def save_figure(figure: Figure, stem: Path) -> bytes:
@@ -118,7 +185,7 @@ def save_figure(figure: Figure, stem: Path) -> bytes:
     png = png_bytes(figure)
     stem.with_name(f"{stem.name}.png").write_bytes(png)
     figure.set_layout_engine("none")  # the places found for the PNG hold for the PDF too
-    with rc_context(STYLE):
+    with drawing():
         figure.savefig(stem.with_name(f"{stem.name}.pdf"), metadata={"CreationDate": None})
     return png
 

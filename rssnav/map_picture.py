@@ -4,34 +4,43 @@ Cells without a path are hatched, so that they cannot be taken for a weak signal
 solid at the receivers' height; light ones, lintels and low walls, leave it free.
 """
 
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from floorplans import FloorPlan
-from floorplans.plan_legend import INK, markers
 from raytrace import Grid, RadioMap
-from rssnav.files import whole_file
-
-COLOUR_MAP = "viridis"
-"""Even in lightness, so it reads in grey and with a colour-vision deficiency."""
+from rssnav.figures import (
+    COLUMN_IN,
+    INK,
+    PAGE_IN,
+    draw_cells,
+    draw_source,
+    draw_start,
+    save_picture,
+    styled,
+)
 
 NO_PATH = "#e3e3e3"
-HATCH = "xxxx"
+HATCH = "xxxxxx"
 FREE_WALL = "#b9b3a8"
-SCALE_M_PER_INCH = 11.0
-LEGEND_COLUMN_INCH = 1.8
-LENGTH_TOLERANCE_M = 1e-6
-SIZE_RANGE_INCH = (4.0, 10.0)
+LONG_M = 40.0
+"""A longer plan is drawn over both columns of a page."""
+
+_BESIDE_IN, _BELOW_IN, _LINE_IN, _PAD_IN = 0.98, 0.66, 0.16, 0.05
+_CHARACTER_IN, _KEY_IN = 0.057, 1.15
+_LENGTH_TOLERANCE_M = 1e-6
 
 
 def draw_radio_map(
@@ -60,54 +69,60 @@ def draw_radio_map(
         For ``figure.colorbar(image, label="RSS [dBm]")``.
     """
     dark = ~np.isfinite(radio_map.rss_dbm)
-    extent = _extent(radio_map.grid)
-    rss_dbm = np.ma.masked_array(radio_map.rss_dbm, dark)
     low, high = rss_range_dbm or _range_of(radio_map.rss_dbm[~dark])
-    image = ax.imshow(
-        rss_dbm, origin="lower", extent=extent, cmap=COLOUR_MAP, vmin=low, vmax=high, zorder=1
-    )
+    rss_dbm = np.ma.masked_array(radio_map.rss_dbm, dark)
+    image = draw_cells(ax, radio_map.grid, rss_dbm, norm=Normalize(low, high))
     image.set_gid("rss")
     if dark.any():
         _draw_dark_cells(radio_map.grid, dark, ax)
     _draw_walls(plan, radio_map.grid.height_m, ax)
-    for mark, (x, y) in zip(markers(), (plan.source[:2], plan.start), strict=True):
-        mark.set_data([x], [y])
-        ax.add_line(mark)
-    _set_up_axes(plan, ax)
+    draw_source(ax, plan)
+    draw_start(ax, plan)
+    _set_limits(plan, ax)
     return image
 
 
-def save_map_picture(plan: FloorPlan, radio_map: RadioMap, path: str | Path) -> None:
-    """Draw a radio map with its scale, legend and parameters into a file.
+@styled
+def map_figure(plan: FloorPlan, radio_map: RadioMap, *, width_in: float | None = None) -> Figure:
+    """Draw a radio map with its scale, legend and parameters.
 
     Parameters
     ----------
     plan, radio_map
         As for `draw_radio_map`.
+    width_in : float, optional
+        Width of the figure [inch]: by default one column of a two-column page, or both for a plan
+        longer than 40 m.
+    """
+    width_in = width_in or _width_in(plan)
+    keys = _keys(plan, radio_map)
+    columns = max(1, int(width_in / _KEY_IN))
+    title = textwrap.wrap(_title(plan, radio_map), int(width_in / _CHARACTER_IN))
+    lines = len(title) + -(-(len(keys) + 2) // columns)
+    layout = ConstrainedLayoutEngine(w_pad=_PAD_IN, h_pad=_PAD_IN)
+    figure = Figure((width_in, _height_in(plan, width_in, lines)), layout=layout)
+    ax = figure.add_subplot()
+    image = draw_radio_map(plan, radio_map, ax)
+    figure.colorbar(image, ax=ax, label="RSS [dBm]", pad=0.02, aspect=25)
+    figure.suptitle("\n".join(title), x=0.01, ha="left", fontsize="medium")
+    marks, _ = ax.get_legend_handles_labels()
+    figure.legend(handles=[*marks, *keys], loc="outside lower center", ncols=columns)
+    return figure
+
+
+def save_map_picture(
+    plan: FloorPlan, radio_map: RadioMap, path: str | Path, *, width_in: float | None = None
+) -> None:
+    """Draw a radio map into a file.
+
+    Parameters
+    ----------
+    plan, radio_map, width_in
+        As for `map_figure`.
     path : str or Path
         Its suffix names the format: .png, .svg or .pdf. Written whole or not at all.
     """
-    figure = Figure(figsize=_figure_size(plan), layout="constrained")
-    ax = figure.add_subplot()
-    image = draw_radio_map(plan, radio_map, ax)
-    figure.colorbar(image, ax=ax, label="RSS [dBm]", pad=0.01, aspect=25)
-    ax.set_title(_title(plan, radio_map), loc="left", fontsize=10)
-    has_dark_cells = not np.isfinite(radio_map.rss_dbm).all()
-    figure.legend(
-        handles=_legend_handles(plan, radio_map.grid.height_m, has_dark_cells),
-        loc="outside lower center",
-        ncols=int(figure.get_figwidth() / LEGEND_COLUMN_INCH),
-        frameon=False,
-        fontsize=9,
-    )
-    with whole_file(path) as beside:
-        figure.savefig(beside, dpi=200)
-
-
-def _extent(grid: Grid) -> tuple[float, float, float, float]:
-    """Left, right, lower and upper edge of the cells [m]."""
-    half = 0.5 * grid.cell_size_m
-    return grid.x[0] - half, grid.x[-1] + half, grid.y[0] - half, grid.y[-1] + half
+    save_picture(map_figure(plan, radio_map, width_in=width_in), path)
 
 
 def _range_of(rss_dbm: NDArray[np.float64]) -> tuple[float, float]:
@@ -138,8 +153,8 @@ def _draw_walls(plan: FloorPlan, height_m: float, ax: Axes) -> None:
     """Draw all walls lightly, and over them in ink what is solid at a height [m]."""
     whole = np.array([(wall.start, wall.end) for wall in plan.walls])
     layers: Sequence[tuple[str, NDArray[np.float64], str, float]] = (
-        ("walls", whole, FREE_WALL, 1.0),
-        ("solid walls", plan.solid_segments(height_m), INK, 1.4),
+        ("walls", whole, FREE_WALL, 0.7),
+        ("solid walls", plan.solid_segments(height_m), INK, 0.9),
     )
     for order, (gid, segments, colour, width) in enumerate(layers, 2):
         lines = LineCollection(
@@ -149,25 +164,25 @@ def _draw_walls(plan: FloorPlan, height_m: float, ax: Axes) -> None:
         ax.add_collection(lines, autolim=False)
 
 
-def _set_up_axes(plan: FloorPlan, ax: Axes) -> None:
+def _set_limits(plan: FloorPlan, ax: Axes) -> None:
     x_min, y_min, x_max, y_max = plan.bounds
     margin = 0.01 * max(x_max - x_min, y_max - y_min)
     ax.set_xlim(x_min - margin, x_max + margin)
     ax.set_ylim(y_min - margin, y_max + margin)
-    ax.set_aspect("equal")
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], integer=True))
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("y [m]")
     ax.spines[:].set_visible(False)
 
 
-def _figure_size(plan: FloorPlan) -> tuple[float, float]:
-    """Width and height of a figure that a plan fills [inch]."""
+def _width_in(plan: FloorPlan) -> float:
+    """Width of a plan's picture [inch]."""
     x_min, y_min, x_max, y_max = plan.bounds
-    longer = max(x_max - x_min, y_max - y_min)
-    inch = float(np.clip(longer / SCALE_M_PER_INCH, *SIZE_RANGE_INCH)) / longer
-    return (x_max - x_min) * inch + 1.7, (y_max - y_min) * inch + 1.3
+    return PAGE_IN if max(x_max - x_min, y_max - y_min) > LONG_M else COLUMN_IN
+
+
+def _height_in(plan: FloorPlan, width_in: float, lines: int) -> float:
+    """Height of a figure [inch] that its plan and some lines of text fill."""
+    x_min, y_min, x_max, y_max = plan.bounds
+    drawn_in = (width_in - _BESIDE_IN) * (y_max - y_min) / (x_max - x_min)
+    return drawn_in + _BELOW_IN + lines * _LINE_IN
 
 
 def _title(plan: FloorPlan, radio_map: RadioMap) -> str:
@@ -178,14 +193,15 @@ def _title(plan: FloorPlan, radio_map: RadioMap) -> str:
     )
 
 
-def _legend_handles(plan: FloorPlan, height_m: float, has_dark_cells: bool) -> list[Line2D | Patch]:
-    handles: list[Line2D | Patch] = [
-        *markers(),
-        Line2D([], [], color=INK, lw=1.4, label=f"wall at {height_m:g} m"),
+def _keys(plan: FloorPlan, radio_map: RadioMap) -> list[Line2D | Patch]:
+    """Explain walls and hatching."""
+    height_m = radio_map.grid.height_m
+    keys: list[Line2D | Patch] = [
+        Line2D([], [], color=INK, lw=0.9, label=f"wall at {height_m:g} m")
     ]
     solid_m = np.linalg.norm(np.diff(plan.solid_segments(height_m), axis=1), axis=2).sum()
-    if solid_m < sum(wall.length_m for wall in plan.walls) - LENGTH_TOLERANCE_M:
-        handles.append(Line2D([], [], color=FREE_WALL, lw=1.0, label="opening or low wall"))
-    if has_dark_cells:
-        handles.append(Patch(facecolor=NO_PATH, edgecolor=INK, hatch=HATCH, lw=0, label="no path"))
-    return handles
+    if solid_m < sum(wall.length_m for wall in plan.walls) - _LENGTH_TOLERANCE_M:
+        keys.append(Line2D([], [], color=FREE_WALL, lw=0.9, label="opening or low wall"))
+    if not np.isfinite(radio_map.rss_dbm).all():
+        keys.append(Patch(facecolor=NO_PATH, edgecolor=INK, hatch=HATCH, lw=0, label="no path"))
+    return keys

@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cli_plans import ROOM
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 import floorplans
-from raytrace import TraceConfig
-from rssnav.map_picture import draw_radio_map, save_map_picture
+from raytrace import Grid, TraceConfig
+from rssnav.figures import COLUMN_IN, INK, PAGE_IN, chosen_style
+from rssnav.map_picture import draw_radio_map, map_figure, save_map_picture
 from rssnav.maps import make_map
 
 DARK = (2, 4)
@@ -50,7 +52,7 @@ def test_readings_lie_on_their_cells(plan, whole) -> None:
     assert np.array_equal(image.get_array(), whole.rss_dbm)
     assert image.get_clim() == (-60.0, -20.0)
     assert "no path" not in by_gid(ax)
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x [m]", "y [m]")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("$x$ [m]", "$y$ [m]")
     assert ax.get_aspect() == 1.0
 
 
@@ -92,13 +94,52 @@ def test_map_without_any_path_can_be_drawn(plan, whole) -> None:
 def test_saved_picture_names_units_and_explains_the_hatching(
     plan, whole, with_a_dark_cell, tmp_path
 ) -> None:
-    import matplotlib as mpl
-
-    with mpl.rc_context({"svg.fonttype": "none"}):
-        save_map_picture(plan, with_a_dark_cell, tmp_path / "dark.svg")
-        save_map_picture(plan, whole, tmp_path / "whole.svg")
+    save_map_picture(plan, with_a_dark_cell, tmp_path / "dark.svg")
+    save_map_picture(plan, whole, tmp_path / "whole.svg")
     text = (tmp_path / "dark.svg").read_text()
-    for words in ("RSS [dBm]", "x [m]", "room: 25 dBm at 2.4 GHz", "wall at 2 m", "no path"):
+    for words in ("RSS [dBm]", "[m]", "room: 25 dBm at 2.4 GHz", "wall at 2 m", "no path"):
         assert words in text
     assert ">no path<" not in (tmp_path / "whole.svg").read_text()
     assert sorted(file.name for file in tmp_path.iterdir()) == ["dark.svg", "whole.svg"]
+
+
+def test_a_small_plan_fills_a_column_and_a_long_one_the_page(plan, whole) -> None:
+    assert map_figure(plan, whole).get_figwidth() == COLUMN_IN
+    long = floorplans.load("scenario1")
+    grid = Grid.over(long.bounds, 1.0, 2.0)
+    figure = map_figure(long, replace(whole, grid=grid, rss_dbm=np.zeros(grid.shape)))
+    assert figure.get_figwidth() == PAGE_IN
+
+
+def test_nothing_of_the_picture_is_cut_off_or_overlaps(plan, with_a_dark_cell) -> None:
+    figure = map_figure(plan, with_a_dark_cell)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    figure.draw(renderer)
+    parts = [figure._suptitle, *figure.axes, *figure.legends]
+    boxes = [part.get_tightbbox(renderer) for part in parts]
+    for k, box in enumerate(boxes):
+        assert figure.bbox.containsx(box.x0)
+        assert figure.bbox.containsx(box.x1)
+        assert figure.bbox.containsy(box.y0)
+        assert figure.bbox.containsy(box.y1)
+        assert not any(box.overlaps(other) for other in boxes[:k])
+
+
+def test_a_chosen_style_is_laid_over_the_projects_own(plan, whole, tmp_path) -> None:
+    own = tmp_path / "own.mplstyle"
+    own.write_text("font.size: 11\naxes.labelcolor: ff0000\n")
+    with chosen_style(str(own)):
+        figure = map_figure(plan, whole)
+    assert figure.axes[0].xaxis.label.get_color() == "#ff0000"
+    assert map_figure(plan, whole).axes[0].xaxis.label.get_color() == INK
+
+
+@pytest.mark.parametrize("style", ["gray scale", "https://example.org/a.mplstyle", "no.such"])
+def test_a_style_that_there_is_not_is_refused(style) -> None:
+    with pytest.raises(ValueError, match=r"is no matplotlib style; .*ggplot"), chosen_style(style):
+        pytest.fail("a style that does not exist was taken")
+
+
+def test_pdf_embeds_its_fonts(plan, whole, tmp_path) -> None:
+    save_map_picture(plan, whole, tmp_path / "map.pdf")
+    assert b"/FontFile2" in (tmp_path / "map.pdf").read_bytes()
