@@ -26,7 +26,6 @@ from trimesh.viewer.notebook import scene_to_html
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from floorplans.materials import MATERIAL_COLOURS
 from floorplans.mesh import Triangles, slab_triangles
 from floorplans.plan import FloorPlan
 from floorplans.plan_legend import SOURCE, START
@@ -37,7 +36,7 @@ Y_UP = np.array(
 """Turns (x, y, z) with z up into glTF's axes, y up."""
 
 GLASS_OPACITY = 0.35
-FLOOR_COLOUR = "#f1eee6"
+FLOOR_COLOUR = "#cfc9ba"
 MARKER_RADIUS_M = 0.15
 LINE_RADIUS_M = 0.02
 CAMERA_PITCH_DEG = -50.0
@@ -79,11 +78,11 @@ def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) 
     for name in dict.fromkeys(names[is_wall].tolist()):
         share = min(opacity, GLASS_OPACITY) if name == "glass" else opacity
         sheet = triangles[is_wall & (names == name)]
-        add_triangles(scene, f"walls:{name}", sheet, MATERIAL_COLOURS[name], share)
+        add_triangles(scene, f"walls:{name}", sheet, plan.colour_of(name), share)
     add_triangles(scene, "floor", slab_triangles(plan.outline, 0.0), FLOOR_COLOUR)
     if ceiling:
         lid = slab_triangles(plan.outline, plan.height_m)
-        add_triangles(scene, "ceiling", lid, MATERIAL_COLOURS[plan.ceiling_material], 0.5)
+        add_triangles(scene, "ceiling", lid, plan.colour_of(plan.ceiling_material), 0.5)
     add_points(scene, "source", [plan.source], SOURCE)
     add_points(scene, "start", [(*plan.start, MARKER_RADIUS_M)], START)
     _set_camera(scene)

@@ -10,6 +10,7 @@ import floorplans
 from floorplans import FloorPlan
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
 from rssnav import GridWorld, WorldError, shortest_path
+from rssnav.cli import plan_new
 from rssnav.cli.console import print_json, print_pairs, print_table
 from rssnav.cli.options import PICTURE_SUFFIXES, Json, Plan, check_suffix, examples
 from rssnav.cli.plan_sketch import sketch
@@ -17,6 +18,7 @@ from rssnav.files import whole_file
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M, scene_of
 from rssnav.world import GOAL_DISTANCE_M
 
+SOLID_SUFFIXES = (".html", ".glb")
 MESH_SUFFIXES = (".glb", ".ply", ".stl", ".obj")
 SPEEDS = (1, 2, 4)
 
@@ -27,6 +29,8 @@ app = typer.Typer(no_args_is_help=True, rich_markup_mode="rich")
 
 def add_to(parent: typer.Typer) -> None:
     """Add the commands below ``plan``."""
+    for part in (plan_new,):
+        part.add_to(app)
     parent.add_typer(
         app,
         name="plan",
@@ -64,48 +68,73 @@ def list_plans(as_json: Json = False) -> None:
         "rssnav plan show flat",
         "rssnav plan show flat -o flat.png",
         "rssnav plan show scenario2 --view 3d -o scenario2.svg",
+        "rssnav plan show scenario2 -o scenario2.html",
     )
 )
 def show(
     plan: Plan,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Draw into a .png, .svg or .pdf."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="Draw into a .png, .svg or .pdf; an .html or .glb is a view to turn and zoom.",
+        ),
     ] = None,
     view: Annotated[
-        Literal["2d", "3d"], typer.Option(help="From above, or walls in three dimensions.")
-    ] = "2d",
+        Literal["2d", "3d"] | None,
+        typer.Option(
+            help="From above, or walls in three dimensions.",
+            show_default="2d; 3d for .html and .glb",
+        ),
+    ] = None,
 ) -> None:
     """Draw a plan into a file, or sketch it in the terminal where none is given."""
-    check_suffix(output, PICTURE_SUFFIXES, "--output")
+    check_suffix(output, PICTURE_SUFFIXES + SOLID_SUFFIXES, "--output")
     if output is None and view == "3d":
         raise typer.BadParameter(
             "the view in three dimensions needs a file: add -o FILE.png.", param_hint="--view"
         )
+    if output is not None and output.suffix.lower() in SOLID_SUFFIXES and view == "2d":
+        raise typer.BadParameter(
+            f"{output.suffix} is a view in three dimensions; draw from above into a .png, .svg "
+            "or .pdf.",
+            param_hint="--view",
+        )
     loaded = floorplans.load(plan)
     if output is None:
         print(sketch(loaded))
-        _print_facts(loaded)
+        print_facts(loaded)
         return
     _draw(loaded, output, view)
     print(f"wrote {output}")
 
 
-def _draw(plan: FloorPlan, output: Path, view: Literal["2d", "3d"]) -> None:
+def _draw(plan: FloorPlan, output: Path, view: Literal["2d", "3d"] | None) -> None:
+    from floorplans.drawing import save_plan_picture
+    from floorplans.viewer_3d import plan_scene, save_scene
+
+    with whole_file(output) as beside:
+        if output.suffix.lower() in SOLID_SUFFIXES:
+            save_scene(plan_scene(plan), beside, plan.name)
+        elif view == "3d":
+            _draw_walls_in_3d(plan, beside)
+        else:
+            save_plan_picture(plan, beside)
+
+
+def _draw_walls_in_3d(plan: FloorPlan, path: Path) -> None:
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d import Axes3D
 
-    from floorplans.drawing import draw_plan_3d, save_plan_picture
+    from floorplans.drawing import draw_plan_3d
 
-    with whole_file(output) as beside:
-        if view == "2d":
-            save_plan_picture(plan, beside)
-            return
-        figure = Figure(figsize=(9.0, 6.0))
-        ax = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
-        assert isinstance(ax, Axes3D)
-        draw_plan_3d(plan, ax)
-        figure.savefig(beside, dpi=200, bbox_inches="tight")
+    figure = Figure(figsize=(9.0, 6.0))
+    ax = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
+    assert isinstance(ax, Axes3D)
+    draw_plan_3d(plan, ax)
+    figure.savefig(path, dpi=200, bbox_inches="tight")
 
 
 @app.command(epilog=examples("rssnav plan check flat", "rssnav plan check scenario1 --json"))
@@ -120,7 +149,7 @@ def check(plan: Plan, as_json: Json = False) -> None:
     if as_json:
         print_json({"plan": plan, **_facts(loaded), "flights": flights})
         return
-    _print_facts(loaded)
+    print_facts(loaded)
     print()
     print("shortest flight from the start to the source")
     print_table(
@@ -200,7 +229,8 @@ def _facts(plan: FloorPlan) -> dict[str, Any]:
     }
 
 
-def _print_facts(plan: FloorPlan) -> None:
+def print_facts(plan: FloorPlan) -> None:
+    """Print what a plan is, a line a property."""
     print_pairs(
         [
             ("plan", plan.name),

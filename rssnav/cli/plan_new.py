@@ -1,0 +1,50 @@
+"""``rssnav plan new``: write a starter plan."""
+
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rssnav.cli.options import check_suffix, examples
+from rssnav.files import whole_file
+
+_SIZE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX×]\s*(\d+(?:\.\d+)?)\s*")
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the command."""
+    parent.command(epilog=examples("rssnav plan new --size 40x25 -o my.toml"))(new)
+
+
+def new(
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE", help="The .toml file to write.")
+    ],
+    size: Annotated[
+        str, typer.Option(metavar="WxD", help="Extent along x and y in metres.")
+    ] = "12x9",
+    height: Annotated[
+        float, typer.Option(metavar="M", help="From floor to ceiling in metres.")
+    ] = 3.0,
+    force: Annotated[bool, typer.Option("--force", help="Replace whatever is at FILE.")] = False,
+) -> None:
+    """Write a starter plan of three rooms, with comments that explain every key."""
+    from floorplans.starter import starter_plan
+
+    check_suffix(output, (".toml",), "--output")
+    match = _SIZE.fullmatch(size)
+    if match is None:
+        raise typer.BadParameter(
+            f"{size!r} is no size; give width x depth in metres, such as 40x25.",
+            param_hint="--size",
+        )
+    try:
+        text = starter_plan(output.stem, float(match[1]), float(match[2]), height)
+    except ValueError as error:
+        raise typer.BadParameter(f"{error}.", param_hint="--size, --height") from error
+    if output.exists() and not force:
+        raise FileExistsError(17, "the file is there already; --force replaces it", str(output))
+    with whole_file(output) as beside:
+        beside.write_text(text, encoding="utf-8", newline="\n")
+    print(f"wrote {output}; see it with: rssnav plan show {output}")
