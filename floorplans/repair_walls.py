@@ -1,0 +1,141 @@
+"""What the steps of the repair share: changes, and walls moved with their openings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from math import hypot
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
+
+_DECIMALS = 7
+"""Coordinates are kept to 0.1 µm, a tenth of the distance at which points are the same."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing that was mended.
+
+    Attributes
+    ----------
+    kind : str
+        "moved", "joined", "cut", "dropped", "closed" or "raised".
+    text : str
+        What was done.
+    at : (float, float)
+        Where, (x, y) [m].
+    """
+
+    kind: str
+    text: str
+    at: Point
+
+    def __str__(self) -> str:
+        """Say where, and what was done."""
+        return f"{at_text(self.at)}: {self.text}"
+
+
+def at_text(point: Point) -> str:
+    """Write a point to the millimetre.
+
+    Examples
+    --------
+    >>> at_text((1.0, -0.0))
+    '(1, 0)'
+    """
+    x, y = (round(coordinate, 3) + 0.0 for coordinate in point)
+    return f"({x:g}, {y:g})"
+
+
+def tidy_point(x: float, y: float) -> Point:
+    """Round a point to 0.1 µm."""
+    return (round(float(x), _DECIMALS) + 0.0, round(float(y), _DECIMALS) + 0.0)
+
+
+def direction(wall: Wall) -> Point:
+    """Unit vector from a wall's start to its end."""
+    (x0, y0), (x1, y1) = wall.start, wall.end
+    length = hypot(x1 - x0, y1 - y0)
+    return ((x1 - x0) / length, (y1 - y0) / length)
+
+
+def along_across(wall: Wall, point: Point) -> tuple[float, float]:
+    """Coordinates of a point along a wall's line from its start, and across it, to the left [m]."""
+    ux, uy = direction(wall)
+    x, y = point[0] - wall.start[0], point[1] - wall.start[1]
+    return (x * ux + y * uy, ux * y - uy * x)
+
+
+def wall_lines(walls: Sequence[Wall]) -> NDArray[np.object_]:
+    """Centre lines as shapely lines, (n,)."""
+    ends = np.array([(wall.start, wall.end) for wall in walls], dtype=np.float64)
+    return np.array(shapely.linestrings(ends.reshape(-1, 2, 2)), dtype=np.object_)
+
+
+def moved_wall(parts: Sequence[Wall], start: Point, end: Point) -> Wall:
+    """Make a wall between two points that looks like the first of `parts`, with all their openings.
+
+    Openings keep their place in the plan as far as the new wall reaches; of two that would
+    overlap, the one of the earlier part stays.
+    """
+    bare = replace(parts[0], start=start, end=end, openings=())
+    openings: list[Opening] = []
+    for part in parts:
+        for moved in _moved_openings(part, bare):
+            if not any(_overlap(moved, other) for other in openings):
+                openings.append(moved)
+    return replace(bare, openings=tuple(sorted(openings, key=lambda o: (o.offset_m, o.sill_m))))
+
+
+def _moved_openings(part: Wall, bare: Wall) -> Iterable[Opening]:
+    """Openings of `part` as seen from `bare`, cut to its length."""
+    for opening in part.openings:
+        sides = (part.point_at(opening.offset_m), part.point_at(opening.end_m))
+        low, high = sorted(along_across(bare, side)[0] for side in sides)
+        low, high = max(low, 0.0), min(high, bare.length_m)
+        if abs(low - opening.offset_m) < TOLERANCE_M and abs(high - opening.end_m) < TOLERANCE_M:
+            yield opening
+        elif high - low > TOLERANCE_M and 2 * (high - low) >= opening.width_m:
+            low, high = round(low, _DECIMALS), round(high, _DECIMALS)
+            yield replace(opening, offset_m=low, width_m=high - low)
+
+
+def _overlap(a: Opening, b: Opening) -> bool:
+    along = min(a.end_m, b.end_m) - max(a.offset_m, b.offset_m)
+    return along > TOLERANCE_M and min(a.head_m, b.head_m) > max(a.sill_m, b.sill_m) + TOLERANCE_M
+
+
+def points_on_walls(walls: Sequence[Wall]) -> list[list[float]]:
+    """Where along each wall others end on it or cross it [m]."""
+    lines = wall_lines(walls)
+    cuts: list[list[float]] = [[] for _ in walls]
+    first, second = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=TOLERANCE_M)
+    for i, j in zip(first.tolist(), second.tolist(), strict=True):
+        if i == j:
+            continue
+        for end in (walls[j].start, walls[j].end):
+            s, across = along_across(walls[i], end)
+            if abs(across) <= TOLERANCE_M and 0 < s < walls[i].length_m:
+                cuts[i].append(s)
+        crossing = line_crossing(walls[i], walls[j])
+        if crossing is not None:
+            s = along_across(walls[i], crossing)[0]
+            t = along_across(walls[j], crossing)[0]
+            if 0 < s < walls[i].length_m and 0 < t < walls[j].length_m:
+                cuts[i].append(s)
+    return cuts
+
+
+def line_crossing(a: Wall, b: Wall, min_sine: float = 1e-3) -> Point | None:
+    """Where the lines of two walls cross; None where the sine of their angle is below a limit."""
+    (ux, uy), (vx, vy) = direction(a), direction(b)
+    sine = ux * vy - uy * vx
+    if abs(sine) < min_sine:
+        return None
+    x, y = b.start[0] - a.start[0], b.start[1] - a.start[1]
+    s = (x * vy - y * vx) / sine
+    return (a.start[0] + s * ux, a.start[1] + s * uy)
