@@ -73,10 +73,19 @@ def _moved_to_walls(
             candidates[i].append((j, gap))
     moved = ends.copy()
     for i, others in enumerate(candidates):
-        if others and min(gap for _, gap in others) > TOLERANCE_M:
-            end = _End(i // 2, i % 2)
-            moved[end.wall, end.side] = _meeting_point(walls, end, others, reach_m)
+        end = _End(i // 2, i % 2)
+        touched = [j for j, gap_m in others if gap_m <= TOLERANCE_M]
+        if any(_inner(walls[j], ends[end.wall, end.side]) for j in touched):
+            continue
+        apart = [(j, gap_m) for j, gap_m in others if gap_m > TOLERANCE_M]
+        moved[end.wall, end.side] = _meeting_point(walls, end, apart, reach_m, bool(touched))
     return moved
+
+
+def _inner(wall: Wall, point: NDArray[np.float64]) -> bool:
+    """Whether a point of a wall lies between its ends."""
+    s, _ = along_across(wall, (float(point[0]), float(point[1])))
+    return TOLERANCE_M < s < wall.length_m - TOLERANCE_M
 
 
 def _points(ends: NDArray[np.float64]) -> NDArray[np.object_]:
@@ -84,15 +93,22 @@ def _points(ends: NDArray[np.float64]) -> NDArray[np.object_]:
 
 
 def _meeting_point(
-    walls: Sequence[Wall], end: _End, others: Iterable[tuple[int, float]], reach_m: float
+    walls: Sequence[Wall],
+    end: _End,
+    others: Iterable[tuple[int, float]],
+    reach_m: float,
+    in_corner: bool,
 ) -> Point:
-    """Where an end should be: the nearest crossing of its line with that of a wall around it."""
+    """Where an end should be: the nearest crossing of its line with that of a wall around it.
+
+    An end that meets another end already moves no farther than the reach.
+    """
     wall = walls[end.wall]
     here = wall.end if end.side else wall.start
     best, best_m = here, np.inf
     for j, gap_m in others:
         other = walls[j]
-        if gap_m > reach_m + other.thickness_m / 2:
+        if gap_m > reach_m + (0.0 if in_corner else other.thickness_m / 2):
             continue
         crossing = line_crossing(wall, other, _MIN_SINE)
         if crossing is None:

@@ -1,0 +1,211 @@
+"""Doors and windows, hung into the walls they stand in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from math import dist, hypot, radians, sin
+
+import shapely
+from shapely.geometry import Point, Polygon
+
+from floorplans.importers.draft import RawOpening
+from floorplans.importers.enclosing import on_edge
+from floorplans.repair_walls import Change, along_across, direction, tidy_point, wall_lines
+from floorplans.walls import TOLERANCE_M, Opening, Wall
+
+DOOR_HEAD_M = 2.1
+WINDOW_SILL_M = 0.9
+WINDOW_HEAD_M = 2.1
+DOOR_MATERIAL, DOOR_THICKNESS_M = "wood", 0.04
+WINDOW_MATERIAL, WINDOW_THICKNESS_M = "glass", 0.02
+
+_MAX_SINE = sin(radians(20.0))
+_BESIDE_M = 0.3
+"""How far beside its wall's body the middle of an opening may be drawn [m]."""
+_JOIN_M = 0.1
+"""Openings of one kind nearer than this are one, such as the leaves of a double door [m]."""
+_MIN_SHARE = 0.5
+"""Share of an opening's width that must lie in its wall."""
+
+
+@dataclass(frozen=True)
+class Hung:
+    """Walls with their openings, and the openings there was no wall for."""
+
+    walls: tuple[Wall, ...]
+    changes: tuple[Change, ...]
+
+
+def bridge(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall, ...]:
+    """Fill the gaps of walls that are broken at their doors and windows.
+
+    A gap is filled where an opening stands between the ends of two walls in one line; the filling
+    looks like the longer of them.
+
+    Parameters
+    ----------
+    walls : sequence of Wall
+    openings : sequence of RawOpening
+
+    Returns
+    -------
+    tuple of Wall
+        Those given, then the fillings.
+    """
+    if not walls:
+        return ()
+    lines = wall_lines(walls)
+    tree = shapely.STRtree(lines)
+    thickest_m = max(wall.thickness_m for wall in walls)
+    fillings: list[Wall] = []
+    for opening in openings:
+        far_m = opening.width_m / 2 + thickest_m + _BESIDE_M
+        near = tree.query(Point(opening.centre), "dwithin", distance=far_m).tolist()
+        filling = _filling(opening, [walls[i] for i in near])
+        if filling is not None:
+            fillings.append(filling)
+    return (*walls, *fillings)
+
+
+def _filling(opening: RawOpening, near: Sequence[Wall]) -> Wall | None:
+    """Wall between the two ends an opening stands between; None where it stands in a wall."""
+    walls = [wall for wall in near if _parallel(opening, wall)]
+    if any(_holds(wall, opening) for wall in walls):
+        return None
+    best: Wall | None = None
+    for a, b in product(walls, walls):
+        if a is b or a.length_m < b.length_m or not _one_line(a, b):
+            continue
+        start, end = min(product((a.start, a.end), (b.start, b.end)), key=lambda e: dist(*e))
+        gap = replace(a, start=start, end=end, openings=())
+        if (
+            gap.length_m > TOLERANCE_M
+            and _between(gap, opening)
+            and (best is None or gap.length_m < best.length_m)
+        ):
+            best = gap
+    return best
+
+
+def _parallel(opening: RawOpening, wall: Wall) -> bool:
+    if opening.direction is None:
+        return True
+    (ux, uy), (vx, vy) = direction(wall), opening.direction
+    return abs(ux * vy - uy * vx) <= _MAX_SINE * hypot(vx, vy)
+
+
+def _holds(wall: Wall, opening: RawOpening) -> bool:
+    """Whether the middle of an opening lies beside a wall, and half its width along it."""
+    s, across = along_across(wall, opening.centre)
+    overlap = min(s + opening.width_m / 2, wall.length_m) - max(s - opening.width_m / 2, 0.0)
+    beside = abs(across) <= wall.thickness_m / 2 + _BESIDE_M
+    return beside and 0 <= s <= wall.length_m and overlap > _MIN_SHARE * opening.width_m
+
+
+def _one_line(a: Wall, b: Wall) -> bool:
+    """Whether the bodies of two walls lie in one line."""
+    (ux, uy), (vx, vy) = direction(a), direction(b)
+    offsets = [abs(along_across(a, end)[1]) for end in (b.start, b.end)]
+    return (
+        abs(ux * vy - uy * vx) <= _MAX_SINE and max(offsets) < (a.thickness_m + b.thickness_m) / 2
+    )
+
+
+def _between(gap: Wall, opening: RawOpening) -> bool:
+    """Whether an opening fills most of a gap."""
+    s, across = along_across(gap, opening.centre)
+    return (
+        0 < s < gap.length_m
+        and abs(across) <= gap.thickness_m / 2 + _BESIDE_M
+        and _parallel(opening, gap)
+        and opening.width_m <= gap.length_m + 2 * _BESIDE_M
+        and gap.length_m <= opening.width_m + 2 * _BESIDE_M
+    )
+
+
+def hang(walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon) -> Hung:
+    """Cut openings into the walls they stand in.
+
+    Parameters
+    ----------
+    walls : sequence of Wall
+    openings : sequence of RawOpening
+        Doors before windows: of two that overlap the earlier one stays.
+    outline : shapely.geometry.Polygon
+        Openings in its edge get a filling.
+
+    Returns
+    -------
+    Hung
+    """
+    tree = shapely.STRtree(wall_lines(walls))
+    thickest_m = max(wall.thickness_m for wall in walls)
+    changes: list[Change] = []
+    shares: list[list[Opening]] = [list(wall.openings) for wall in walls]
+    edge = on_edge(walls, outline).tolist()
+    for raw in openings:
+        near = tree.query(Point(raw.centre), "dwithin", distance=thickest_m / 2 + _BESIDE_M)
+        fitting = [i for i in near.tolist() if _parallel(raw, walls[i]) and _holds(walls[i], raw)]
+        if not fitting:
+            changes.append(
+                Change("dropped", f"{raw.kind} that stands in no wall dropped", raw.centre)
+            )
+            continue
+        i = min(fitting, key=lambda i: (abs(along_across(walls[i], raw.centre)[1]), i))
+        _add(shares[i], _opening(raw, walls[i], edge[i]))
+    hung = [
+        replace(wall, openings=tuple(sorted(share, key=lambda o: (o.offset_m, o.sill_m))))
+        for wall, share in zip(walls, shares, strict=True)
+    ]
+    return Hung(tuple(hung), tuple(changes))
+
+
+def _opening(raw: RawOpening, wall: Wall, in_outline: bool) -> Opening:
+    """Opening of a wall, with defaults for what the file does not tell."""
+    s, _ = along_across(wall, raw.centre)
+    low, high = max(s - raw.width_m / 2, 0.0), min(s + raw.width_m / 2, wall.length_m)
+    low, high = tidy_point(low, high)
+    window = raw.kind == "window"
+    head_m = raw.head_m or (WINDOW_HEAD_M if window else DOOR_HEAD_M)
+    head_m = min(head_m, wall.height_m)
+    sill_m = (WINDOW_SILL_M if window else 0.0) if raw.sill_m is None else max(raw.sill_m, 0.0)
+    material, thickness_m = raw.material, raw.thickness_m
+    if material is None and window:
+        material, thickness_m = WINDOW_MATERIAL, thickness_m or WINDOW_THICKNESS_M
+    elif material is None and in_outline:
+        material, thickness_m = DOOR_MATERIAL, thickness_m or DOOR_THICKNESS_M
+    return Opening(
+        offset_m=low,
+        width_m=round(high - low, 7),
+        sill_m=sill_m if sill_m < head_m else 0.0,
+        head_m=head_m,
+        kind=raw.kind,
+        material=material,
+        thickness_m=thickness_m if material is not None else None,
+    )
+
+
+def _add(share: list[Opening], new: Opening) -> None:
+    """Add an opening to those of a wall: joined with one of its kind, cut where others are."""
+    for i, old in enumerate(share):
+        apart_m = max(old.offset_m, new.offset_m) - min(old.end_m, new.end_m)
+        if apart_m <= _JOIN_M and _look(old) == _look(new):
+            low, high = min(old.offset_m, new.offset_m), max(old.end_m, new.end_m)
+            share.pop(i)
+            _add(share, replace(old, offset_m=low, width_m=high - low))
+            return
+    for old in share:
+        over = min(old.head_m, new.head_m) - max(old.sill_m, new.sill_m) > TOLERANCE_M
+        if (
+            over
+            and old.offset_m < new.end_m - TOLERANCE_M
+            and new.offset_m < old.end_m - TOLERANCE_M
+        ):
+            return
+    share.append(new)
+
+
+def _look(opening: Opening) -> tuple[object, ...]:
+    return (opening.kind, opening.sill_m, opening.head_m, opening.material, opening.thickness_m)

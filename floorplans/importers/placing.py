@@ -1,0 +1,124 @@
+"""Source and start, where the user gives none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components, dijkstra
+from shapely.geometry import MultiLineString, Polygon
+
+from floorplans.walls import Wall, solid_intervals
+
+CELL_M = 1.0
+FLYING_HEIGHT_M = 2.0
+SOURCE_HEIGHT_M = 1.5
+
+_STEPS = ((1, 0), (0, 1), (1, 1), (1, -1))
+_START_CLEAR_M = 0.25
+
+
+@dataclass(frozen=True)
+class Places:
+    """Source (x, y) and start (x, y) [m], and how far apart they are as one walks [m]."""
+
+    source: tuple[float, float]
+    start: tuple[float, float]
+    way_m: float
+
+
+def place(
+    outline: Polygon,
+    walls: Sequence[Wall],
+    height_m: float,
+    source: tuple[float, float] | None = None,
+) -> Places:
+    """Choose a source well off the walls, and as start the cell with the longest way to it.
+
+    Cells are squares of 1 m from the outline's lower left corner on; ways go over the largest set
+    of cells that one can walk between, in 8 directions, at the height of flights.
+
+    Parameters
+    ----------
+    outline : shapely.geometry.Polygon
+    walls : sequence of Wall
+        With their openings.
+    height_m : float
+        Of the ceiling [m].
+    source : (float, float), optional
+        Where the source is already known to be [m].
+
+    Returns
+    -------
+    Places
+        The start is the centre of a cell.
+    """
+    solid = _solid(walls, min(FLYING_HEIGHT_M, height_m / 2))
+    cells, ways = _cells(outline, solid)
+    if not len(cells):
+        inside = outline.representative_point()
+        return Places(source or (inside.x, inside.y), (inside.x, inside.y), 0.0)
+    clear_m = shapely.distance(shapely.points(cells), MultiLineString(list(solid)))
+    _, labels = connected_components(ways, directed=False)
+    if source is None:
+        among = labels == np.bincount(labels).argmax()
+        at = int(np.where(among, clear_m, -1.0).argmax())
+        source = (float(cells[at][0]), float(cells[at][1]))
+    else:
+        at = int(np.hypot(*(cells - np.array(source)).T).argmin())
+    way_m = dijkstra(ways, directed=False, indices=at)
+    usable = np.isfinite(way_m) & (clear_m >= _START_CLEAR_M)
+    far = int(np.where(usable, way_m, -1.0).argmax()) if usable.any() else at
+    return Places(source, (float(cells[far][0]), float(cells[far][1])), float(way_m[far]))
+
+
+def _solid(walls: Sequence[Wall], height_m: float) -> NDArray[np.float64]:
+    """Segments (n, 2, 2) in which walls are solid at a height."""
+    segments = [
+        (wall.point_at(low), wall.point_at(high))
+        for wall in walls
+        for low, high in solid_intervals(wall, height_m)
+    ]
+    return np.array(segments, dtype=np.float64).reshape(-1, 2, 2)
+
+
+def _cells(outline: Polygon, solid: NDArray[np.float64]) -> tuple[NDArray[np.float64], csr_array]:
+    """Centres (n, 2) of the cells inside, and the lengths of the steps between them."""
+    x_min, y_min, x_max, y_max = outline.bounds
+    x = np.arange(x_min + CELL_M / 2, x_max, CELL_M)
+    y = np.arange(y_min + CELL_M / 2, y_max, CELL_M)
+    grid = np.stack(np.meshgrid(x, y), axis=-1)
+    shapely.prepare(outline)
+    inside = np.array(shapely.contains_properly(outline, shapely.points(grid)))
+    centres = grid[inside]
+    number = np.full(inside.shape, -1)
+    number[inside] = np.arange(len(centres))
+    pairs = np.concatenate([_neighbours(number, d_x, d_y) for d_x, d_y in _STEPS])
+    pairs = pairs[_open(centres[pairs], outline, solid)]
+    lengths = np.hypot(*(centres[pairs[:, 0]] - centres[pairs[:, 1]]).T)
+    return centres, csr_array((lengths, (pairs[:, 0], pairs[:, 1])), shape=(len(centres),) * 2)
+
+
+def _open(
+    segments: NDArray[np.float64], outline: Polygon, solid: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Which segments (n, 2, 2) stay in the outline and touch no wall."""
+    steps = np.array(shapely.linestrings(segments), dtype=np.object_)
+    walls = shapely.STRtree(np.array(shapely.linestrings(solid), dtype=np.object_))
+    open_ = np.array(shapely.contains_properly(outline, steps))
+    open_[walls.query(steps, predicate="intersects")[0]] = False
+    return open_
+
+
+def _neighbours(number: NDArray[np.int64], d_x: int, d_y: int) -> NDArray[np.int64]:
+    """Numbers (n, 2) of the cells of all pairs that lie (d_x, d_y) apart."""
+    n_y, n_x = number.shape
+    low, high = max(0, -d_y), n_y - max(0, d_y)
+    here = number[low:high, : n_x - d_x].ravel()
+    there = number[low + d_y : high + d_y, d_x:].ravel()
+    both = (here >= 0) & (there >= 0)
+    return np.column_stack([here[both], there[both]])
