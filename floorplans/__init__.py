@@ -13,7 +13,13 @@ a material a face, `FloorPlan.solid_segments` tells where it is solid at a heigh
 
 from floorplans.errors import PlanError
 from floorplans.georeference import GeoOrigin
-from floorplans.materials import MATERIAL_COLOURS, MATERIALS
+from floorplans.materials import (
+    MATERIAL_COLOURS,
+    MATERIAL_EDITIONS,
+    MATERIALS,
+    MaterialLayer,
+    PlanMaterial,
+)
 from floorplans.mesh import SheetMaterial, WallMesh
 from floorplans.office import generate_office
 from floorplans.plan import FloorPlan
@@ -24,12 +30,15 @@ from floorplans.walls import Opening, OpeningKind, Panel, Wall, panels
 __all__ = [
     "MATERIALS",
     "MATERIAL_COLOURS",
+    "MATERIAL_EDITIONS",
     "FloorPlan",
     "GeoOrigin",
+    "MaterialLayer",
     "Opening",
     "OpeningKind",
     "Panel",
     "PlanError",
+    "PlanMaterial",
     "SheetMaterial",
     "Wall",
     "WallMesh",

@@ -15,7 +15,8 @@ from shapely.strtree import STRtree
 
 from floorplans.errors import Place, PlanError
 from floorplans.georeference import check_origin
-from floorplans.wall_checks import check_material, check_positive, check_wall
+from floorplans.materials import check_materials, check_slab
+from floorplans.wall_checks import check_positive, check_wall
 from floorplans.walls import TOLERANCE_M, Wall, closed_intervals
 
 if TYPE_CHECKING:
@@ -25,10 +26,11 @@ if TYPE_CHECKING:
 def check_plan(plan: FloorPlan) -> None:
     """Raise `PlanError` unless the plan describes a closed storey a search can be run in."""
     _check_name(plan.name)
+    check_materials(plan.materials, plan.material_edition)
     _check_slabs(plan)
     _check_outline(plan.outline)
     for index, wall in enumerate(plan.walls):
-        check_wall(wall, plan.height_m, ("walls", index))
+        check_wall(wall, plan.height_m, plan.own_materials, ("walls", index))
     _check_walls_inside(plan)
     _check_no_double_walls(plan.walls)
     _check_enclosure(plan)
@@ -45,8 +47,9 @@ def _check_name(name: str) -> None:
 
 def _check_slabs(plan: FloorPlan) -> None:
     check_positive(plan.height_m, ("height_m",))
-    check_material(plan.floor_material, ("floor_material",))
-    check_material(plan.ceiling_material, ("ceiling_material",))
+    own = plan.own_materials
+    check_slab(plan.floor_material, plan.floor_thickness_m, own, (), "floor_")
+    check_slab(plan.ceiling_material, plan.ceiling_thickness_m, own, (), "ceiling_")
     check_positive(plan.floor_thickness_m, ("floor_thickness_m",))
     check_positive(plan.ceiling_thickness_m, ("ceiling_thickness_m",))
 

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from shapely import get_coordinates
 
 from floorplans.drawing_3d import draw_plan_3d
-from floorplans.materials import MATERIAL_COLOURS
 from floorplans.plan import FloorPlan
 from floorplans.plan_legend import (
     INK,
@@ -93,7 +92,7 @@ def _draw_walls(plan: FloorPlan, ax: Axes, strips: WallStrips) -> None:
     for wall in sorted(plan.walls, key=lambda wall: wall.thickness_m):
         by_look[is_low(wall, plan), wall.material] += strips.strips(wall)
     for rank, ((low, material), quads) in enumerate(by_look.items()):
-        colour = MATERIAL_COLOURS[material]
+        colour = plan.colour_of(material)
         collection = PolyCollection(
             quads,
             facecolors=[(colour, 0.35 if low else 1.0)],
@@ -119,7 +118,7 @@ def _draw_openings(plan: FloorPlan, ax: Axes, strips: WallStrips) -> None:
         else:
             lines[opening.kind] += strip_edges(wall, opening.offset_m, opening.end_m, width)
     for material, quads in fillings.items():
-        collection = PolyCollection(quads, facecolors=MATERIAL_COLOURS[material], zorder=3)
+        collection = PolyCollection(quads, facecolors=plan.colour_of(material), zorder=3)
         collection.set_gid(f"fillings:{material}")
         ax.add_collection(collection)
     for kind, segments in lines.items():

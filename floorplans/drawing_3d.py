@@ -9,7 +9,6 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
-from floorplans.materials import MATERIAL_COLOURS
 from floorplans.mesh import panel_corners, slab_triangles
 from floorplans.plan import FloorPlan
 from floorplans.plan_legend import markers, material_handles
@@ -62,7 +61,7 @@ def _draw_floor(plan: FloorPlan, ax: Axes3D) -> None:
 
 def _draw_panels(plan: FloorPlan, ax: Axes3D) -> None:
     parts = [(wall, panel) for wall in plan.walls for panel in panels(wall)]
-    shades = np.array([_shade(wall, panel) for wall, panel in parts])
+    shades = np.array([_shade(plan, wall, panel) for wall, panel in parts])
     collection = Poly3DCollection(
         [panel_corners(wall, panel) for wall, panel in parts],
         facecolors=shades,
@@ -75,12 +74,12 @@ def _draw_panels(plan: FloorPlan, ax: Axes3D) -> None:
     ax.add_collection3d(collection)
 
 
-def _shade(wall: Wall, panel: Panel) -> NDArray[np.float64]:
+def _shade(plan: FloorPlan, wall: Wall, panel: Panel) -> NDArray[np.float64]:
     """Colour (r, g, b, a) of a panel: lighter the more its wall faces the light; lintels darker."""
     along = (np.array(wall.end) - np.array(wall.start)) / wall.length_m
     facing = abs(along[0] * LIGHT[1] - along[1] * LIGHT[0])
     lightness = 0.75 + 0.35 * facing - (0.15 if panel.z_min > 0 else 0.0)
-    colour = np.clip(lightness * np.array(to_rgb(MATERIAL_COLOURS[panel.material])), 0, 1)
+    colour = np.clip(lightness * np.array(to_rgb(plan.colour_of(panel.material))), 0, 1)
     return np.append(colour, GLASS_ALPHA if panel.material == "glass" else ALPHA)
 
 

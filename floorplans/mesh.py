@@ -17,7 +17,6 @@ import trimesh
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
-from floorplans.materials import MATERIAL_COLOURS
 from floorplans.walls import Panel, Wall, panels
 
 if TYPE_CHECKING:
@@ -73,7 +72,7 @@ def build_mesh(plan: FloorPlan) -> WallMesh:
     mesh = trimesh.Trimesh(
         vertices=vertices,
         faces=np.arange(len(vertices)).reshape(-1, 3),
-        face_colors=_colours(materials)[face_material],
+        face_colors=_colours(plan, materials)[face_material],
         process=False,
     )
     return WallMesh(mesh, face_material, materials)
@@ -115,6 +114,6 @@ def slab_triangles(outline: Polygon, z: float) -> Triangles:
     return np.concatenate([plan_view, np.full((*plan_view.shape[:2], 1), z)], axis=2)
 
 
-def _colours(materials: tuple[SheetMaterial, ...]) -> NDArray[np.uint8]:
-    colours = [bytes.fromhex(MATERIAL_COLOURS[material.name][1:]) for material in materials]
+def _colours(plan: FloorPlan, materials: tuple[SheetMaterial, ...]) -> NDArray[np.uint8]:
+    colours = [bytes.fromhex(plan.colour_of(material.name)[1:]) for material in materials]
     return np.array([(*colour, 255) for colour in colours], dtype=np.uint8)

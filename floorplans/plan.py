@@ -11,6 +11,7 @@ from shapely.geometry import Polygon
 
 from floorplans.checks import check_plan
 from floorplans.georeference import GeoOrigin
+from floorplans.materials import MATERIAL_COLOURS, OWN_COLOUR, Own, PlanMaterial, by_name
 from floorplans.mesh import WallMesh, build_mesh
 from floorplans.toml_writer import dumps
 from floorplans.walls import Opening, Wall, solid_intervals
@@ -37,7 +38,7 @@ class FloorPlan:
     height_m : float
         From the floor (z = 0) to the ceiling [m].
     floor_material, ceiling_material : str
-        Of `floorplans.MATERIALS`.
+        Of `floorplans.MATERIALS`, or a name of `materials`.
     source : (float, float, float)
         Where the radio source lies, (x, y, z) [m].
     start : (float, float)
@@ -46,6 +47,10 @@ class FloorPlan:
         Thickness of the slabs [m].
     origin : GeoOrigin or None
         Where on the Earth the plan lies; None where that is not known.
+    materials : tuple of PlanMaterial
+        The plan's own, that walls, fillings, floor and ceiling may name beside the built-in ones.
+    material_edition : str or None
+        Of `floorplans.MATERIAL_EDITIONS`, for the built-in materials; None leaves it to the tracer.
 
     Raises
     ------
@@ -64,6 +69,8 @@ class FloorPlan:
     floor_thickness_m: float = 0.2
     ceiling_thickness_m: float = 0.2
     origin: GeoOrigin | None = None
+    materials: tuple[PlanMaterial, ...] = ()
+    material_edition: str | None = None
 
     def __post_init__(self) -> None:
         check_plan(self)
@@ -77,6 +84,17 @@ class FloorPlan:
     def sha256(self) -> str:
         """Hex digest of the plan's TOML text; a file's comments and layout do not change it."""
         return sha256(dumps(self).encode()).hexdigest()
+
+    @cached_property
+    def own_materials(self) -> Own:
+        """The plan's own materials by name."""
+        return by_name(self.materials)
+
+    def colour_of(self, material: str) -> str:
+        """Colour #rrggbb that a built-in material or one of the plan's own is drawn in."""
+        if material in self.own_materials:
+            return self.own_materials[material].colour or OWN_COLOUR
+        return MATERIAL_COLOURS[material]
 
     def to_mesh(self) -> WallMesh:
         """Build the sheets of walls, floor and ceiling; see `floorplans.mesh`."""

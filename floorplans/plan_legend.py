@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path
 
-from floorplans.materials import MATERIAL_COLOURS, MATERIALS
+from floorplans.materials import MATERIALS
 from floorplans.plan import FloorPlan
 from floorplans.plan_shapes import leaf_and_arc
 from floorplans.walls import Opening, Wall
@@ -28,12 +28,12 @@ def markers() -> tuple[Line2D, Line2D]:
 
 
 def material_handles(plan: FloorPlan) -> Iterator[Artist]:
-    """Yield a patch for each material of walls and fillings, in the order of `MATERIALS`."""
+    """Yield a patch for each material of walls and fillings: built-in ones, then the plan's own."""
     used = {wall.material for wall in plan.walls}
     used |= {o.material for _, o in plan_openings(plan) if o.material is not None}
-    for material in MATERIALS:
+    for material in (*MATERIALS, *plan.own_materials):
         if material in used:
-            yield Patch(facecolor=MATERIAL_COLOURS[material], label=material.replace("_", " "))
+            yield Patch(facecolor=plan.colour_of(material), label=material.replace("_", " "))
 
 
 def kind_handles(plan: FloorPlan) -> Iterator[Artist]:

@@ -11,7 +11,9 @@ from shapely.geometry import Polygon
 
 from floorplans.errors import Place, PlanError, format_place
 from floorplans.georeference import GeoOrigin
+from floorplans.materials import Own, by_name, check_materials
 from floorplans.plan import FloorPlan
+from floorplans.toml_materials import read_materials
 from floorplans.toml_table import Table, as_points
 from floorplans.toml_writer import FORMAT_VERSION, dumps
 from floorplans.wall_checks import check_openings, check_positive, opening_kind
@@ -19,8 +21,8 @@ from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 
 PLAN_KEYS = (
     "name", "format", "height_m", "floor_material", "floor_thickness_m", "ceiling_material",
-    "ceiling_thickness_m", "source", "start", "outline", "holes", "origin", "defaults",
-    "walls",
+    "ceiling_thickness_m", "source", "start", "outline", "holes", "material_edition", "materials",
+    "origin", "defaults", "walls",
 )  # fmt: skip
 ORIGIN_KEYS = ("longitude_deg", "latitude_deg", "rotation_deg")
 DEFAULTS_KEYS = ("material", "thickness_m")
@@ -112,7 +114,12 @@ def _read_plan(table: Table) -> FloorPlan:
     height_m = table.number("height_m")
     check_positive(height_m, ("height_m",))
     defaults = table.table("defaults", DEFAULTS_KEYS)
-    pieces = [_read_wall(wall, defaults, height_m) for wall in table.tables("walls", WALL_KEYS)]
+    materials = read_materials(table)
+    check_materials(materials, None)
+    own = by_name(materials)
+    walls = table.tables("walls", WALL_KEYS)
+    pieces = [_read_wall(wall, defaults, height_m, own) for wall in walls]
+    floor, ceiling = table.text("floor_material"), table.text("ceiling_material")
     x, y, z = table.coordinates("source", "xyz")
     start_x, start_y = table.coordinates("start", "xy")
     try:
@@ -121,13 +128,15 @@ def _read_plan(table: Table) -> FloorPlan:
             outline=_read_outline(table),
             walls=tuple(wall for walls in pieces for wall in walls),
             height_m=height_m,
-            floor_material=table.text("floor_material"),
-            ceiling_material=table.text("ceiling_material"),
+            floor_material=floor,
+            ceiling_material=ceiling,
             source=(x, y, z),
             start=(start_x, start_y),
-            floor_thickness_m=table.number("floor_thickness_m", 0.2),
-            ceiling_thickness_m=table.number("ceiling_thickness_m", 0.2),
+            floor_thickness_m=table.number("floor_thickness_m", _layers_m(floor, own, 0.2)),
+            ceiling_thickness_m=table.number("ceiling_thickness_m", _layers_m(ceiling, own, 0.2)),
             origin=_read_origin(table),
+            materials=materials,
+            material_edition=table.optional_text("material_edition"),
         )
     except PlanError as error:
         place = _place_in_file(error.place, [len(walls) for walls in pieces])
@@ -174,17 +183,27 @@ def _ring(points: Corners, place: Place) -> Corners:
     return points
 
 
-def _read_wall(table: Table, defaults: Table, ceiling_m: float) -> list[Wall]:
+def _layers_m(material: str | None, own: Own, otherwise: float | None) -> float | None:
+    """Thickness of a plan's own layered material [m], or another value for any other material."""
+    if material is None or material not in own:
+        return otherwise
+    layers_m = own[material].thickness_m
+    return otherwise if layers_m is None else layers_m
+
+
+def _read_wall(table: Table, defaults: Table, ceiling_m: float, own: Own) -> list[Wall]:
     """Return one wall for each straight piece of the polyline."""
     points = table.points("points")
     if len(points) < 2:
         raise PlanError("expected at least two points", (*table.place, "points"), points)
     material = table.text("material", defaults.optional_text("material"))
-    thickness_m = table.number("thickness_m", defaults.optional_number("thickness_m"))
+    default_m = _layers_m(material, own, defaults.optional_number("thickness_m"))
+    thickness_m = table.number("thickness_m", default_m)
     height_m = table.number("height_m", ceiling_m)
-    openings = [_read_opening(row) for row in table.tables("openings", OPENING_KEYS)]
+    openings = [_read_opening(row, own) for row in table.tables("openings", OPENING_KEYS)]
     lengths = [dist(start, end) for start, end in pairwise(points)]
-    check_openings(openings, sum(lengths), height_m, table.place)
+    whole = Wall((0.0, 0.0), (sum(lengths), 0.0), material, thickness_m, height_m, tuple(openings))
+    check_openings(whole, own, table.place)
     shares = _share_out(openings, lengths, points, table.place)
     return [
         Wall(start, end, material, thickness_m, height_m, share)
@@ -192,15 +211,17 @@ def _read_wall(table: Table, defaults: Table, ceiling_m: float) -> list[Wall]:
     ]
 
 
-def _read_opening(table: Table) -> Opening:
+def _read_opening(table: Table, own: Own) -> Opening:
+    material = table.optional_text("material")
+    thickness_m = table.optional_number("thickness_m")
     return Opening(
         offset_m=table.number("offset_m"),
         width_m=table.number("width_m"),
         sill_m=table.number("sill_m", 0.0),
         head_m=table.number("head_m"),
         kind=opening_kind(table.text("kind"), (*table.place, "kind")),
-        material=table.optional_text("material"),
-        thickness_m=table.optional_number("thickness_m"),
+        material=material,
+        thickness_m=_layers_m(material, own, None) if thickness_m is None else thickness_m,
     )
 
 

@@ -87,11 +87,12 @@ class Table:
         return self.data[key]
 
 
-def as_table(value: object, known: tuple[str, ...], place: Place) -> Table:
-    """Return a value as a table; raise `PlanError` if it is none."""
+def as_table(value: object, known: tuple[str, ...] | None, place: Place) -> Table:
+    """Return a value as a table; raise `PlanError` if it is none. None: it may have any keys."""
     if not isinstance(value, dict):
         raise _wrong_type("a table", value, place)
-    return Table(cast("dict[str, object]", value), known, place)
+    data = cast("dict[str, object]", value)
+    return Table(data, tuple(data) if known is None else known, place)
 
 
 def as_points(value: object, place: Place) -> list[tuple[float, float]]:

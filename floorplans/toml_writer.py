@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from shapely.geometry.polygon import LinearRing
 
 from floorplans.georeference import GeoOrigin
+from floorplans.toml_materials import write_materials
+from floorplans.toml_values import toml_number as _number
+from floorplans.toml_values import toml_text as _text
 from floorplans.walls import Opening, Wall
 
 if TYPE_CHECKING:
@@ -23,7 +25,7 @@ def dumps(plan: FloorPlan) -> str:
     Equal plans give equal texts: keys come in a fixed order, values that are the format's defaults
     are left out, and numbers are the shortest that read back exactly.
     """
-    blocks = ["\n".join(_top_level(plan))]
+    blocks = ["\n".join(_top_level(plan)), *write_materials(plan.materials)]
     blocks += ["\n".join(_wall(wall, plan.height_m)) for wall in plan.walls]
     return "\n\n".join(blocks) + "\n"
 
@@ -41,6 +43,8 @@ def _top_level(plan: FloorPlan) -> Iterator[str]:
     yield f"outline = {_ring(plan.outline.exterior)}"
     if plan.outline.interiors:
         yield "holes = [" + ", ".join(_ring(hole) for hole in plan.outline.interiors) + "]"
+    if plan.material_edition is not None:
+        yield f"material_edition = {_text(plan.material_edition)}"
     if plan.origin is not None:
         yield f"origin = {{ {', '.join(_origin(plan.origin))} }}"
 
@@ -84,12 +88,3 @@ def _ring(ring: LinearRing) -> str:
 
 def _point(coordinates: Iterable[float]) -> str:
     return "[" + ", ".join(_number(coordinate) for coordinate in coordinates) + "]"
-
-
-def _number(number: float) -> str:
-    shortest = repr(float(number) + 0.0)  # adding 0 makes -0.0, which equals 0.0, the same text
-    return shortest.removesuffix(".0")
-
-
-def _text(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)

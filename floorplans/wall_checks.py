@@ -1,18 +1,17 @@
 """Checks of one wall and its openings; the first problem found raises `PlanError`."""
 
-from collections.abc import Sequence
 from itertools import combinations
 from math import isfinite
 from typing import get_args
 
 from floorplans.errors import Place, PlanError, unknown_name
-from floorplans.materials import MATERIALS
+from floorplans.materials import Own, check_slab
 from floorplans.walls import TOLERANCE_M, Opening, OpeningKind, Wall
 
 OPENING_KINDS: tuple[OpeningKind, ...] = get_args(OpeningKind)
 
 
-def check_wall(wall: Wall, ceiling_m: float, place: Place) -> None:
+def check_wall(wall: Wall, ceiling_m: float, own: Own, place: Place) -> None:
     """Check a wall by itself: its ends, numbers, material and openings.
 
     Parameters
@@ -20,6 +19,8 @@ def check_wall(wall: Wall, ceiling_m: float, place: Place) -> None:
     wall : Wall
     ceiling_m : float
         Height of the ceiling above the floor [m].
+    own : Own
+        The plan's own materials.
     place : Place
         The wall's table, for the message.
 
@@ -37,7 +38,7 @@ def check_wall(wall: Wall, ceiling_m: float, place: Place) -> None:
             "give two different points",
             place,
         )
-    check_material(wall.material, (*place, "material"))
+    check_slab(wall.material, wall.thickness_m, own, place, is_wall=True)
     check_positive(wall.thickness_m, (*place, "thickness_m"))
     check_positive(wall.height_m, (*place, "height_m"))
     if wall.height_m > ceiling_m:
@@ -46,19 +47,17 @@ def check_wall(wall: Wall, ceiling_m: float, place: Place) -> None:
             (*place, "height_m"),
             wall.height_m,
         )
-    check_openings(wall.openings, wall.length_m, wall.height_m, place)
+    check_openings(wall, own, place)
 
 
-def check_openings(
-    openings: Sequence[Opening], length_m: float, height_m: float, place: Place
-) -> None:
+def check_openings(wall: Wall, own: Own, place: Place) -> None:
     """Check that the openings of a wall lie inside it and do not overlap.
 
     Parameters
     ----------
-    openings : sequence of Opening
-    length_m, height_m : float
-        Of the wall [m].
+    wall : Wall
+    own : Own
+        The plan's own materials.
     place : Place
         The wall's table, for the message.
 
@@ -66,11 +65,12 @@ def check_openings(
     ------
     PlanError
     """
+    openings = wall.openings
     for index, opening in enumerate(openings):
         here = (*place, "openings", index)
-        _check_extent_along(opening, length_m, here)
-        _check_extent_upwards(opening, height_m, here)
-        _check_filling(opening, here)
+        _check_extent_along(opening, wall.length_m, here)
+        _check_extent_upwards(opening, wall.height_m, here)
+        _check_filling(opening, wall.thickness_m, own, here)
     for first, second in combinations(range(len(openings)), 2):
         if _overlap(openings[first], openings[second]):
             o = openings[first]
@@ -80,12 +80,6 @@ def check_openings(
                 "the floor; move or shrink one of them",
                 (*place, "openings", second),
             )
-
-
-def check_material(name: str, place: Place) -> None:
-    """Raise `PlanError` for a material that is not in `MATERIALS`."""
-    if name not in MATERIALS:
-        raise PlanError(unknown_name("material", name, MATERIALS), place, name)
 
 
 def check_positive(number: float, place: Place) -> None:
@@ -140,10 +134,11 @@ def _check_extent_upwards(opening: Opening, height_m: float, place: Place) -> No
         )
 
 
-def _check_filling(opening: Opening, place: Place) -> None:
+def _check_filling(opening: Opening, wall_m: float, own: Own, place: Place) -> None:
     opening_kind(opening.kind, (*place, "kind"))
     if opening.material is not None:
-        check_material(opening.material, (*place, "material"))
+        thickness_m = wall_m if opening.thickness_m is None else opening.thickness_m
+        check_slab(opening.material, thickness_m, own, place, is_wall=True)
     if opening.thickness_m is not None:
         check_positive(opening.thickness_m, (*place, "thickness_m"))
         if opening.material is None:

@@ -11,8 +11,9 @@ from shapely.geometry.base import BaseGeometry
 from raytrace.cells import CellComplex, cut_into_cells
 from raytrace.edges import LevelEdge, UprightEdge, find_level_edges, find_upright_edges
 from raytrace.errors import SceneError
+from raytrace.itu import DEFAULT_EDITION
 from raytrace.kernels.plan_view import PlanView
-from raytrace.materials import find_material
+from raytrace.materials import Material, Slab
 from raytrace.sheets import read_sheets
 
 
@@ -27,23 +28,26 @@ class Scene:
     footprint
         What the floor covers (shapely, plan view) [m].
     slabs
-        (material name, thickness [m]) of every wall, floor and ceiling.
+        What walls, floor and ceiling are made of.
     floor_material, ceiling_material
         Index into `slabs`.
     cells
         The plan view cut into convex cells.
     upright_edges, level_edges
         Where it diffracts.
+    material_edition
+        The edition of ITU-R P.2040 that built-in materials were taken from.
     """
 
     height_m: float
     footprint: BaseGeometry
-    slabs: tuple[tuple[str, float], ...]
+    slabs: tuple[Slab, ...]
     floor_material: int
     ceiling_material: int
     cells: CellComplex
     upright_edges: tuple[UprightEdge, ...]
     level_edges: tuple[LevelEdge, ...]
+    material_edition: str = DEFAULT_EDITION
 
     @property
     def view(self) -> PlanView:
@@ -55,7 +59,9 @@ class Scene:
         cls,
         mesh: trimesh.Trimesh,
         face_material: NDArray[np.int64],
-        materials: Sequence[tuple[str, float]],
+        materials: Sequence[tuple[str | Material, float]],
+        *,
+        edition: str = DEFAULT_EDITION,
     ) -> "Scene":
         """Read a mesh of vertical sheets, a floor and a ceiling.
 
@@ -66,20 +72,21 @@ class Scene:
         face_material
             (n_faces,) index of each face's material.
         materials
-            (material name, thickness [m]) of each index.
+            (material, thickness [m]) of each index; a name means the built-in material. A layered
+            one must be the same from both sides in a wall; in a floor or ceiling its first
+            layer is the one the room sees.
+        edition
+            Of ITU-R P.2040, for materials given by name.
 
         Raises
         ------
         SceneError
             For a mesh that is not an extruded building, walls that do not enclose the floor,
-            and unknown materials.
+            unknown materials, and walls whose layers differ from side to side.
         """
-        slabs = tuple((str(name), float(thickness)) for name, thickness in materials)
-        for name, thickness in slabs:
-            find_material(name)
-            if not 0.0 < thickness < 10.0:
-                raise SceneError(f"{name} of thickness {thickness} m: expected 0 to 10 m")
+        slabs = tuple(Slab.of(material, thickness, edition) for material, thickness in materials)
         _check_indices(face_material, len(mesh.faces), len(slabs))
+        _check_both_sides(mesh, face_material, slabs)
         sheets = read_sheets(mesh, face_material)
         cells = cut_into_cells(sheets)
         return cls(
@@ -91,6 +98,7 @@ class Scene:
             cells,
             find_upright_edges(cells, sheets.height_m),
             find_level_edges(cells),
+            edition,
         )
 
 
@@ -107,3 +115,16 @@ def _check_indices(face_material: NDArray[np.int64], n_faces: int, n_slabs: int)
             f"face {wrong[0]} refers to material {face_material[wrong[0]]}: expected "
             f"0 to {n_slabs - 1}, an index into the table of materials"
         )
+
+
+def _check_both_sides(
+    mesh: trimesh.Trimesh, face_material: NDArray[np.int64], slabs: Sequence[Slab]
+) -> None:
+    """Refuse walls whose two sides would reflect differently: one sheet has one coefficient."""
+    upright = np.abs(mesh.face_normals[:, 2]) < 0.5
+    for index in np.unique(face_material[upright]):
+        if not slabs[index].is_symmetric:
+            raise SceneError(
+                f"a wall of {slabs[index].material.name}, whose layers differ from side to side: a "
+                "wall is one sheet seen from both; make the layers symmetric"
+            )

@@ -9,7 +9,7 @@ from scipy.special import fresnel
 from raytrace.antennas import Antenna, HalfWaveDipole
 from raytrace.kernels.field import Radio
 from raytrace.kernels.utd import TRANSITION_MAX, TRANSITION_STEPS
-from raytrace.materials import slab_tables
+from raytrace.materials import Slab, slab_tables
 from raytrace.transmitter import Transmitter
 
 Floats = NDArray[np.float64]
@@ -20,7 +20,7 @@ ANTENNA_STEPS = 8192
 
 def make_radio(
     transmitter: Transmitter,
-    slabs: Sequence[tuple[str, float]],
+    slabs: Sequence[Slab],
     *,
     height_m: float,
     floor: int,

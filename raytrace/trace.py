@@ -11,7 +11,6 @@ from raytrace.antennas import Antenna
 from raytrace.families import Family, all_families
 from raytrace.grid import Grid, TraceConfig
 from raytrace.kernels.tracing import Sums, new_record, new_sums
-from raytrace.materials import MATERIAL_EDITION
 from raytrace.paths import Paths
 from raytrace.preparing import TIE_OFFSET_M, Tracing, prepare
 from raytrace.radio_map import RadioMap
@@ -130,7 +129,7 @@ def compute_radio_map(
         grid=grid,
         transmitter=source,
         config=config,
-        provenance=_provenance(time.perf_counter() - started),
+        provenance=_provenance(scene, time.perf_counter() - started),
     )
 
 
@@ -142,10 +141,10 @@ def _dbm(power: Floats, sums: Sums, source: Transmitter) -> Floats:
     return dbm
 
 
-def _provenance(wall_time_s: float) -> dict[str, str | float | int]:
+def _provenance(scene: Scene, wall_time_s: float) -> dict[str, str | float | int]:
     return {
         "tracer_version": TRACER_VERSION,
-        "material_edition": MATERIAL_EDITION,
+        "material_edition": scene.material_edition,
         "tie_offset_m": f"{TIE_OFFSET_M[0]:g}, {TIE_OFFSET_M[1]:g}",
         "wall_time_s": wall_time_s,
         "python": platform.python_version(),

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 import floorplans
-from floorplans import FloorPlan
+from floorplans import FloorPlan, PlanMaterial
 from raytrace import (
     Grid,
     MapFileError,
@@ -19,7 +19,14 @@ from raytrace import (
     Transmitter,
     compute_radio_map,
 )
-from raytrace.materials import MATERIAL_EDITION
+from raytrace.materials import (
+    MATERIAL_EDITION,
+    Dielectric,
+    Layer,
+    Layered,
+    Material,
+    find_material,
+)
 from raytrace.store import FORMAT
 from raytrace.trace import TRACER_VERSION
 
@@ -31,14 +38,24 @@ HEIGHT_M = 2.0
 POWER_DBM = 25.0
 FREQUENCY_HZ = 2.4e9
 
-_MADE_WITH = {"material_edition": MATERIAL_EDITION, "tracer_version": TRACER_VERSION}
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _MARKS = (FORMAT.encode(), b"rss_coherent_dbm")
 _RESOLUTION_M = 1e-9
 
 
-def scene_of(plan: FloorPlan) -> Scene:
+def edition_of(plan: FloorPlan, edition: str | None = None) -> str:
+    """Edition of ITU-R P.2040: the one asked for, else the plan's, else the tracer's."""
+    return edition or plan.material_edition or MATERIAL_EDITION
+
+
+def scene_of(plan: FloorPlan, edition: str | None = None) -> Scene:
     """Make a plan's scene.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+    edition : str, optional
+        Of ITU-R P.2040, for the built-in materials; see `edition_of`.
 
     Raises
     ------
@@ -46,10 +63,34 @@ def scene_of(plan: FloorPlan) -> Scene:
         Where the tracer cannot work with the plan; the message names it.
     """
     walls = plan.to_mesh()
+    edition = edition_of(plan, edition)
     try:
-        return Scene.from_mesh(walls.mesh, walls.face_material, walls.materials)
+        own = _own_materials(plan, edition)
+        materials = [(own.get(name, name), thickness_m) for name, thickness_m in walls.materials]
+        return Scene.from_mesh(walls.mesh, walls.face_material, materials, edition=edition)
     except SceneError as error:
         raise SceneError(f"plan {plan.name!r}: {error}") from error
+
+
+def _own_materials(plan: FloorPlan, edition: str) -> dict[str, Material]:
+    """A plan's own materials as the tracer knows them."""
+    dielectrics = {m.name: _dielectric(m) for m in plan.materials if not m.layers}
+
+    def layer(name: str, thickness_m: float) -> Layer:
+        material = dielectrics.get(name) or find_material(name, edition)
+        assert isinstance(material, Dielectric)
+        return Layer(material, thickness_m)
+
+    layered = {
+        m.name: Layered(m.name, tuple(layer(*of) for of in m.layers))
+        for m in plan.materials
+        if m.layers
+    }
+    return {**dielectrics, **layered}
+
+
+def _dielectric(material: PlanMaterial) -> Dielectric:
+    return Dielectric.of_law(material.name, material.a, material.b, material.c, material.d)
 
 
 @dataclass(frozen=True)
@@ -66,16 +107,20 @@ class MapRequest:
         At the plan's source.
     config
         How far the tracer goes.
+    edition
+        Of ITU-R P.2040, for the built-in materials.
     """
 
     plan: FloorPlan
     grid: Grid
     transmitter: Transmitter
     config: TraceConfig
+    edition: str
 
     def difference(self, radio_map: RadioMap) -> str | None:
         """Say in what respect a map is not the one asked for; None where it is."""
         found, grid = radio_map.provenance, radio_map.grid
+        made_with = {"material_edition": self.edition, "tracer_version": TRACER_VERSION}
         for what, same in (
             ("for another plan", radio_map.plan_sha256 == self.plan.sha256),
             ("with another trace configuration", radio_map.config == self.config),
@@ -83,7 +128,7 @@ class MapRequest:
             ("on another grid", _same_grid(grid, self.grid)),
             *(
                 (f"with another {key.replace('_', ' ')}", found.get(key) == value)
-                for key, value in _MADE_WITH.items()
+                for key, value in made_with.items()
             ),
         ):
             if not same:
@@ -92,7 +137,7 @@ class MapRequest:
 
     def compute(self, threads: int | None = None, progress: Progress | None = None) -> RadioMap:
         """Trace the map and mark it with its plan."""
-        scene = scene_of(self.plan)
+        scene = scene_of(self.plan, self.edition)
         try:
             radio_map = compute_radio_map(
                 scene, self.transmitter, self.grid, self.config, threads=threads, progress=progress
@@ -111,6 +156,7 @@ def make_map(
     config: TraceConfig | None = None,
     power_dbm: float = POWER_DBM,
     frequency_hz: float = FREQUENCY_HZ,
+    edition: str | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     notice: Notice | None = None,
@@ -134,6 +180,8 @@ def make_map(
         Power fed to the source's antenna [dBm].
     frequency_hz : float
         Carrier frequency [Hz].
+    edition : str, optional
+        Of ITU-R P.2040, for the built-in materials; by default the plan's, else the newest.
     threads : int, optional
         How many to trace with; all processors by default. The map does not depend on it.
     progress : callable, optional
@@ -162,6 +210,7 @@ def make_map(
         Grid.over(plan.bounds, cell_size_m, height_m),
         Transmitter(plan.source, power_dbm, frequency_hz),
         config or TraceConfig(),
+        edition_of(plan, edition),
     )
     if path is None:
         return request.compute(threads, progress)

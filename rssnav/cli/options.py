@@ -6,6 +6,14 @@ from typing import Annotated
 import typer
 
 
+def _known_edition(edition: str | None) -> str | None:
+    from floorplans import MATERIAL_EDITIONS
+
+    if edition is None or edition.upper() in MATERIAL_EDITIONS:
+        return edition and edition.upper()
+    raise typer.BadParameter(f"{edition!r} is none of {', '.join(MATERIAL_EDITIONS)}.")
+
+
 def _complete_plan(incomplete: str) -> list[str]:
     import floorplans
 
@@ -35,6 +43,16 @@ Diffractions = Annotated[
     int,
     typer.Option("--diffractions", metavar="N", min=0, max=1, help="Most diffractions on a path."),
 ]
+Edition = Annotated[
+    str | None,
+    typer.Option(
+        "--edition",
+        metavar="P.2040-N",
+        callback=_known_edition,
+        help="Edition of ITU-R P.2040 for the built-in materials.",
+        show_default="the plan's, else the newest",
+    ),
+]
 Threads = Annotated[
     int | None,
     typer.Option(
@@ -55,6 +73,31 @@ Picture = Annotated[
         "--picture",
         metavar="FILE",
         help="Draw the map into a .png, .svg or .pdf.",
+        show_default=False,
+    ),
+]
+
+
+def _check_style(style: str | None) -> str | None:
+    """Refuse a style that matplotlib does not know, as wrong usage."""
+    if style is None:
+        return None
+    from rssnav.figures import check_style
+
+    try:
+        check_style(style)
+    except ValueError as error:
+        raise typer.BadParameter(f"{error}.") from error
+    return style
+
+
+Style = Annotated[
+    str | None,
+    typer.Option(
+        "--style",
+        metavar="NAME",
+        callback=_check_style,
+        help="Lay a matplotlib style over the project's own: its name, or a .mplstyle file.",
         show_default=False,
     ),
 ]

@@ -7,11 +7,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from raytrace.constants import SPEED_OF_LIGHT
-from raytrace.materials import MATERIALS, SLAB_TABLE_STEPS, slab_coefficients, slab_tables
+from raytrace.materials import MATERIALS, SLAB_TABLE_STEPS, slab_tables
+from raytrace.slabs import slab_coefficients
 
 F_HZ = 2.4e9
 WAVELENGTH_M = SPEED_OF_LIGHT / F_HZ
-LOSSY = sorted(set(MATERIALS) - {"metal", "vacuum"})
+KNOWN = sorted(
+    name
+    for name, material in MATERIALS.items()
+    if any(row.low_ghz <= F_HZ * 1e-9 <= row.high_ghz for row in material.rows)
+)
+LOSSY = sorted(set(KNOWN) - {"metal", "vacuum", "air"})
 
 names = st.sampled_from(LOSSY)
 thicknesses = st.floats(1e-3, 0.5)
@@ -105,7 +111,7 @@ def test_a_slab_of_vacuum_is_not_there(thickness_m: float, cos_i: float) -> None
     np.testing.assert_allclose([c.t_te[0], c.t_tm[0]], delay, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", sorted(MATERIALS))
+@pytest.mark.parametrize("name", KNOWN)
 def test_the_table_holds_both_polarisations(name: str) -> None:
     (table,) = slab_tables([(name, 0.1)], F_HZ)
     cos_i = np.linspace(0.0, 1.0, SLAB_TABLE_STEPS + 1)
@@ -113,20 +119,3 @@ def test_the_table_holds_both_polarisations(name: str) -> None:
     tm, mix = table[:-1, 0] + 1j * table[:-1, 1], table[:-1, 2] + 1j * table[:-1, 3]
     np.testing.assert_allclose(tm, c.r_tm, atol=1e-12)
     np.testing.assert_allclose(mix * (1.0 - cos_i**2) - tm, c.r_te, atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("name", "eps_r", "sigma"),
-    [
-        ("concrete", 5.24, 0.0462 * 2.4**0.7822),
-        ("plasterboard", 2.94, 0.0116 * 2.4**0.7076),
-        ("glass", 6.27, 0.0043 * 2.4**1.1925),
-        ("ceiling_board", 1.48, 0.0011 * 2.4**1.1278),
-        ("wood", 1.99, 0.0047 * 2.4**1.0718),
-    ],
-)
-def test_permittivities_are_those_of_p2040_4(name: str, eps_r: float, sigma: float) -> None:
-    eta = MATERIALS[name].complex_permittivity(F_HZ)
-    loss = 17.98 * sigma / 2.4
-    assert eta.real == pytest.approx(eps_r)
-    assert eta.imag == pytest.approx(-loss, rel=1e-3)
