@@ -7,7 +7,7 @@ ends in ``_db`` or ``_dbm``.
 """
 
 from raytrace.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
-from raytrace.errors import MapFileError, SceneError
+from raytrace.errors import MapFileError, SceneError, SceneWarning
 from raytrace.grid import Grid, TraceConfig
 from raytrace.paths import Paths
 from raytrace.radio_map import RadioMap
@@ -26,6 +26,7 @@ __all__ = [
     "RadioMap",
     "Scene",
     "SceneError",
+    "SceneWarning",
     "TraceConfig",
     "Transmitter",
     "compute_radio_map",

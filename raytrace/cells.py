@@ -6,26 +6,21 @@ cell through their edges needs no occlusion test. An edge of a cell is a wall, a
 but the cut between two cells.
 """
 
-from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from raytrace.errors import SceneError
+from raytrace.junctions import NEAR_M
 from raytrace.kernels.plan_view import PARTIAL, PORTAL, WALL, PlanView
+from raytrace.noding import Segment, Vertex, node
 from raytrace.sheets import OPEN, Panel, Profile, Sheets
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Vertex = tuple[float, float]
-Segment = tuple[Vertex, Vertex]
-
-SNAP_M = 2.0**-30
-"""Vertices are snapped to this grid [m], so that nearly exact junctions are exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +50,7 @@ def cut_into_cells(sheets: Sheets) -> CellComplex:
     SceneError
         Where the walls do not enclose the footprint.
     """
-    walls, cuts = _node(sheets.panels)
+    walls, cuts = node(sheets.panels, sheets.footprint)
     faces = _faces([*walls, *cuts], sheets)
     index: dict[Vertex, int] = {}
     for a, b in [*walls, *cuts]:
@@ -71,73 +66,18 @@ def cut_into_cells(sheets: Sheets) -> CellComplex:
     return CellComplex(view, vertices, segments)
 
 
-def _node(panels: Iterable[Panel]) -> tuple[dict[Segment, Panel], set[Segment]]:
-    """Split panels where they meet; add cuts that carry free wall ends on to the next wall."""
-    panels = list(panels)
-    lines = [shapely.LineString([p.start, p.end]) for p in panels]
-    cuts: list[shapely.LineString] = []
-    while True:
-        pieces = _pieces([*lines, *cuts])
-        free = _free_end(pieces)
-        if free is None:
-            break
-        cuts.append(_carry_on(*free, [*lines, *cuts]))
-    tree = shapely.STRtree(lines)
-    middles = shapely.points([((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) for a, b in pieces])
-    near, distance = tree.query_nearest(middles, all_matches=False, return_distance=True)
-    on_wall = distance < 4 * SNAP_M
-    walls = {s: panels[k] for s, k, on in zip(pieces, near[1], on_wall, strict=True) if on}
-    return walls, {s for s, on in zip(pieces, on_wall, strict=True) if not on}
-
-
-def _pieces(lines: list[shapely.LineString]) -> list[Segment]:
-    """Straight pieces of the noded lines, snapped."""
-    noded = shapely.get_parts(shapely.union_all(np.array(lines), grid_size=SNAP_M))
-    found: dict[Segment, None] = {}
-    for line in noded:
-        points = [(float(x), float(y)) for x, y in shapely.get_coordinates(line)]
-        for a, b in pairwise(points):
-            found[(a, b) if a < b else (b, a)] = None
-    return list(found)
-
-
-def _free_end(pieces: list[Segment]) -> tuple[Vertex, Vertex] | None:
-    """Some end that only one piece has, and the piece's other end."""
-    neighbours: defaultdict[Vertex, list[Vertex]] = defaultdict(list)
-    for a, b in pieces:
-        neighbours[a].append(b)
-        neighbours[b].append(a)
-    ends = ((v, others[0]) for v, others in neighbours.items() if len(others) == 1)
-    return next(ends, None)
-
-
-def _carry_on(end: Vertex, before: Vertex, lines: list[shapely.LineString]) -> shapely.LineString:
-    """Return the cut from a free wall end, straight on to the nearest line."""
-    tip = np.array(end)
-    ahead = tip - np.array(before)
-    ahead /= np.hypot(*ahead)
-    ray = shapely.LineString([tip + ahead * 1e-6, tip + ahead * 1e5])
-    hits = shapely.get_coordinates(shapely.intersection(ray, np.array(lines)))
-    if len(hits) == 0:
-        raise SceneError(
-            f"the wall that ends at ({end[0]:g}, {end[1]:g}) points out of the building: "
-            "the walls do not enclose the footprint"
-        )
-    nearest = hits[np.argmin(np.hypot(*(hits - tip).T))]
-    return shapely.LineString([tip, nearest])
-
-
 def _faces(segments: list[Segment], sheets: Sheets) -> list[shapely.Polygon]:
     """Polygons that the segments enclose within the footprint."""
     lines = [shapely.LineString(segment) for segment in segments]
     polygons = shapely.get_parts(shapely.polygonize(lines))
     inside = [p for p in polygons if sheets.footprint.covers(p.representative_point())]
-    covered = sum(p.area for p in inside)
-    if abs(covered - sheets.footprint.area) > 1e-4:
-        missing = sheets.footprint.difference(shapely.union_all(inside)).representative_point()
+    open_floor = sheets.footprint.difference(shapely.union_all(inside))
+    wide = open_floor.buffer(-NEAR_M)
+    if not wide.is_empty:
+        missing = wide.representative_point()
         raise SceneError(
             f"the walls do not enclose the floor around ({missing.x:g}, {missing.y:g}): "
-            f"{sheets.footprint.area - covered:.3f} m2 lie open"
+            f"{open_floor.area:.3f} m2 lie open"
         )
     return inside
 

@@ -23,7 +23,7 @@ Ints = NDArray[np.int64]
 TURN = 2.0 * np.pi
 
 STRAIGHT_RAD = 1e-6
-"""A wall that bends by less does not diffract [rad]: snapping bends short pieces (`SNAP_M`)."""
+"""A wall that bends by less does not diffract [rad]: snapping bends short pieces (`noding`)."""
 
 
 @dataclass(frozen=True, eq=False)

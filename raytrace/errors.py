@@ -1,8 +1,12 @@
-"""The errors this package raises at its boundary."""
+"""The errors and warnings this package raises at its boundary."""
 
 
 class SceneError(ValueError):
     """A mesh, material or position that the tracer cannot work with; the message says why."""
+
+
+class SceneWarning(UserWarning):
+    """Something in a mesh that the tracer has put right; the message names the walls."""
 
 
 class MapFileError(ValueError):
