@@ -8,6 +8,7 @@ colour-vision deficiencies because they differ in lightness as well as in hue.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
+from types import MappingProxyType
 from typing import NamedTuple
 
 from floorplans.errors import Place, PlanError, unknown_name
@@ -155,6 +156,12 @@ def _is_colour(text: str) -> bool:
     return len(text) == 7 and text[0] == "#" and all(letter in digits for letter in text[1:])
 
 
+def check_material(name: str, place: Place, own: Own = MappingProxyType({})) -> None:
+    """Raise `PlanError` for a material that is neither built-in nor one of the plan's own."""
+    if name not in MATERIALS and name not in own:
+        raise PlanError(unknown_name("material", name, (*MATERIALS, *own)), place, name)
+
+
 def check_slab(
     name: str, thickness_m: float, own: Own, place: Place, key: str = "", *, is_wall: bool = False
 ) -> None:
@@ -178,9 +185,8 @@ def check_slab(
     PlanError
     """
     at = (*place, f"{key}material")
+    check_material(name, at, own)
     if name not in own:
-        if name not in MATERIALS:
-            raise PlanError(unknown_name("material", name, (*MATERIALS, *own)), at, name)
         return
     layers_m = own[name].thickness_m
     if layers_m is not None and abs(thickness_m - layers_m) > 1e-6:
