@@ -54,7 +54,7 @@ def snap_ends(walls: Sequence[Wall], reach_m: float, changes: list[Change]) -> t
         return ()
     ends = np.array([(wall.start, wall.end) for wall in walls], dtype=np.float64)
     moved = _moved_to_walls(walls, ends, reach_m)
-    moved = _moved_together(walls, moved, reach_m)
+    moved = _moved_together(walls, moved, _on_walls(walls, moved), reach_m)
     return tuple(_rebuilt(walls, ends, moved, reach_m, changes))
 
 
@@ -80,6 +80,18 @@ def _moved_to_walls(
         apart = [(j, gap_m) for j, gap_m in others if gap_m > TOLERANCE_M]
         moved[end.wall, end.side] = _meeting_point(walls, end, apart, reach_m, bool(touched))
     return moved
+
+
+def _on_walls(walls: Sequence[Wall], ends: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which ends (n, 2, 2) lie on another wall, between its ends, (2 n,)."""
+    points = _points(ends.reshape(-1, 2))
+    which, near = shapely.STRtree(wall_lines(walls)).query(
+        points, predicate="dwithin", distance=TOLERANCE_M
+    )
+    on = np.zeros(points.size, dtype=np.bool_)
+    for i, j in zip(which.tolist(), near.tolist(), strict=True):
+        on[i] |= j != i // 2 and _inner(walls[j], ends[i // 2, i % 2])
+    return on
 
 
 def _inner(wall: Wall, point: NDArray[np.float64]) -> bool:
@@ -130,9 +142,9 @@ def _beside(wall: Wall, point: Point) -> float:
 
 
 def _moved_together(
-    walls: Sequence[Wall], ends: NDArray[np.float64], reach_m: float
+    walls: Sequence[Wall], ends: NDArray[np.float64], fixed: NDArray[np.bool_], reach_m: float
 ) -> NDArray[np.float64]:
-    """Ends (n, 2, 2), those nearer to each other than the reach put on one point."""
+    """Ends (n, 2, 2), those nearer to each other than the reach put on one point, a fixed one."""
     flat = ends.reshape(-1, 2)
     points = _points(flat)
     first, second = shapely.STRtree(points).query(points, predicate="dwithin", distance=reach_m)
@@ -143,7 +155,10 @@ def _moved_together(
     together = flat.copy()
     for members in np.split(order, starts):
         if members.size > 1 and np.ptp(flat[members], axis=0).max() > 0:
-            together[members] = _corner(walls, flat, members, reach_m)
+            firm = members[fixed[members]]
+            together[members] = (
+                flat[firm[0]] if firm.size else _corner(walls, flat, members, reach_m)
+            )
     return together.reshape(ends.shape)
 
 
