@@ -1,8 +1,9 @@
-"""Checks of a whole plan; the first problem found raises `PlanError`."""
+"""Checks of a whole plan: everything that makes it unusable."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -20,24 +21,60 @@ from floorplans.wall_checks import check_positive, check_wall
 from floorplans.walls import TOLERANCE_M, Wall, closed_intervals
 
 if TYPE_CHECKING:
-    from floorplans.plan import FloorPlan
+    from floorplans.plan import UncheckedPlan
 
 
-def check_plan(plan: FloorPlan) -> None:
+def check_plan(plan: UncheckedPlan) -> None:
     """Raise `PlanError` unless the plan describes a closed storey a search can be run in."""
-    _check_name(plan.name)
-    check_materials(plan.materials, plan.material_edition)
-    _check_slabs(plan)
-    _check_outline(plan.outline)
+    for fault in faults(plan):
+        raise fault
+
+
+def faults(plan: UncheckedPlan) -> Iterator[PlanError]:
+    """Yield everything that makes a plan unusable.
+
+    Where numbers or names of the plan are wrong, only those are told: what they make of the
+    building has no meaning.
+    """
+    wrong_numbers = False
+    for fault in _number_faults(plan):
+        wrong_numbers = True
+        yield fault
+    if wrong_numbers:
+        return
+    yield from _walls_outside(plan)
+    yield from _double_walls(plan.walls)
+    yield from _open_edges(plan)
+    yield from _caught(lambda: _check_source(plan))
+    yield from _caught(lambda: _check_start(plan))
+
+
+def _number_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
+    yield from _caught(lambda: _check_name(plan.name))
+    yield from _caught(lambda: check_materials(plan.materials, plan.material_edition))
+    yield from _caught(lambda: _check_slabs(plan))
+    yield from _caught(lambda: _check_outline(plan.outline))
     for index, wall in enumerate(plan.walls):
-        check_wall(wall, plan.height_m, plan.own_materials, ("walls", index))
-    _check_walls_inside(plan)
-    _check_no_double_walls(plan.walls)
-    _check_enclosure(plan)
-    _check_source(plan)
-    _check_start(plan)
-    if plan.origin is not None:
-        check_origin(plan.origin)
+        place: Place = ("walls", index)
+        for fault in _caught(partial(check_wall, wall, plan.height_m, plan.own_materials, place)):
+            yield PlanError(fault.problem, fault.place, fault.value, at=_middle(wall))
+    origin = plan.origin
+    if origin is not None:
+        yield from _caught(lambda: check_origin(origin))
+
+
+def _caught(check: Callable[[], None]) -> Iterator[PlanError]:
+    """Yield the error that a check raises."""
+    try:
+        check()
+    except PlanError as fault:
+        yield fault
+
+
+def _middle(wall: Wall) -> tuple[float, float] | None:
+    """Point half-way along a wall, None where its ends are no numbers."""
+    x, y = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
+    return (x, y) if isfinite(x) and isfinite(y) else None
 
 
 def _check_name(name: str) -> None:
@@ -45,7 +82,7 @@ def _check_name(name: str) -> None:
         raise PlanError("expected one line of printable text", ("name",), name)
 
 
-def _check_slabs(plan: FloorPlan) -> None:
+def _check_slabs(plan: UncheckedPlan) -> None:
     check_positive(plan.height_m, ("height_m",))
     own = plan.own_materials
     check_slab(plan.floor_material, plan.floor_thickness_m, own, (), "floor_")
@@ -70,34 +107,37 @@ def _check_outline(outline: Polygon) -> None:
         raise PlanError("the outline has no area; give at least three corners", place)
 
 
-def _check_walls_inside(plan: FloorPlan) -> None:
+def _walls_outside(plan: UncheckedPlan) -> Iterator[PlanError]:
     room = plan.outline.buffer(TOLERANCE_M)
     shapely.prepare(room)
-    for index, wall in enumerate(plan.walls):
-        line = LineString([wall.start, wall.end])
+    for index, line in enumerate(_centre_lines(plan.walls)):
         if not room.covers(line):
-            where = _stretch(line.difference(room))
-            raise PlanError(
-                f"the wall leaves the outline from {where}; shorten it or widen the outline",
+            outside = _longest(line.difference(room))
+            yield PlanError(
+                f"the wall leaves the outline from {_stretch(outside)}; shorten it or widen the "
+                "outline",
                 ("walls", index),
+                at=_first_point(outside),
             )
 
 
-def _check_no_double_walls(walls: tuple[Wall, ...]) -> None:
+def _double_walls(walls: tuple[Wall, ...]) -> Iterator[PlanError]:
     lines = _centre_lines(walls)
     for first, second in STRtree(_array(lines)).query(_array(lines), predicate="intersects").T:
         if first < second:
             shared = lines[first].intersection(lines[second])
             if shared.length > TOLERANCE_M:
-                raise PlanError(
-                    f"the wall runs along another wall from {_stretch(shared)}; "
+                double = _longest(shared)
+                yield PlanError(
+                    f"the wall runs along another wall from {_stretch(double)}; "
                     "one wall is one sheet: remove the stretch from one of them",
                     ("walls", int(second)),
+                    at=_first_point(double),
                 )
 
 
-def _check_enclosure(plan: FloorPlan) -> None:
-    """Raise unless walls without unfilled openings, floor to ceiling, cover the outline's edge."""
+def _open_edges(plan: UncheckedPlan) -> Iterator[PlanError]:
+    """Yield where walls without unfilled openings, floor to ceiling, do not cover the outline."""
     edge = plan.outline.boundary
     full = [wall for wall in plan.walls if wall.height_m > plan.height_m - TOLERANCE_M]
     near = np.flatnonzero(shapely.dwithin(_array(_centre_lines(full)), edge, 2 * TOLERANCE_M))
@@ -111,14 +151,15 @@ def _check_enclosure(plan: FloorPlan) -> None:
         for gap in _lines(ring.difference(cover)):
             if gap.length > 10 * TOLERANCE_M:
                 side = LineString(gap.coords[:2])
-                raise PlanError(
+                yield PlanError(
                     f"the outline is open from {_stretch(side)}; put a wall from floor to ceiling "
                     "there, and give a door or window in it a material",
                     ("outline",),
+                    at=_first_point(side),
                 )
 
 
-def _check_source(plan: FloorPlan) -> None:
+def _check_source(plan: UncheckedPlan) -> None:
     place: Place = ("source",)
     x, y, z = plan.source
     if not 0 < z < plan.height_m:
@@ -127,20 +168,25 @@ def _check_source(plan: FloorPlan) -> None:
             f"{plan.height_m:g} [m]",
             place,
             plan.source,
+            at=(x, y),
         )
     _check_inside(plan, (x, y), "source", plan.source)
     if _in_wall(plan, (x, y), z):
-        raise PlanError("the source is in a wall; move it into a room", place, plan.source)
+        raise PlanError(
+            "the source is in a wall; move it into a room", place, plan.source, at=(x, y)
+        )
 
 
-def _check_start(plan: FloorPlan) -> None:
+def _check_start(plan: UncheckedPlan) -> None:
     """Raise for a start outside, or with a wall at every height; it may stand in a doorway."""
     _check_inside(plan, plan.start, "start", plan.start)
     if all(_in_wall(plan, plan.start, height_m) for height_m in plan.layer_heights()):
-        raise PlanError("the start is in a wall; move it into a room", ("start",), plan.start)
+        raise PlanError(
+            "the start is in a wall; move it into a room", ("start",), plan.start, at=plan.start
+        )
 
 
-def _check_inside(plan: FloorPlan, point: tuple[float, float], key: str, value: object) -> None:
+def _check_inside(plan: UncheckedPlan, point: tuple[float, float], key: str, value: object) -> None:
     if not plan.outline.covers(Point(point)):
         x_min, y_min, x_max, y_max = plan.bounds
         raise PlanError(
@@ -148,10 +194,11 @@ def _check_inside(plan: FloorPlan, point: tuple[float, float], key: str, value: 
             f"({x_max:g}, {y_max:g}); move it into a room",
             (key,),
             value,
+            at=point,
         )
 
 
-def _in_wall(plan: FloorPlan, point: tuple[float, float], height_m: float) -> bool:
+def _in_wall(plan: UncheckedPlan, point: tuple[float, float], height_m: float) -> bool:
     walls = MultiLineString(list(plan.solid_segments(height_m)))
     return Point(point).distance(walls) < TOLERANCE_M
 
@@ -171,11 +218,18 @@ def _lines(geometry: BaseGeometry) -> list[LineString]:
     return [part for part in parts if isinstance(part, LineString) and not part.is_empty]
 
 
-def _stretch(geometry: BaseGeometry) -> str:
-    """Say "(x, y) to (x, y)" of the longest line of a geometry, rounded to 0.1 mm."""
-    longest = max(_lines(geometry), key=lambda line: line.length)
-    first, last = longest.coords[0], longest.coords[-1]
-    return " to ".join(f"({_tidy(x)}, {_tidy(y)})" for x, y in (first, last))
+def _longest(geometry: BaseGeometry) -> LineString:
+    return max(_lines(geometry), key=lambda line: line.length)
+
+
+def _stretch(line: LineString) -> str:
+    """Say "(x, y) to (x, y)" of the ends of a line, rounded to 0.1 mm."""
+    return " to ".join(f"({_tidy(x)}, {_tidy(y)})" for x, y in (line.coords[0], line.coords[-1]))
+
+
+def _first_point(line: LineString) -> tuple[float, float]:
+    x, y = line.coords[0]
+    return x, y
 
 
 def _tidy(number: float) -> str:

@@ -20,15 +20,23 @@ class PlanError(ValueError):
         The offending value, None if there is none to show.
     origin : str
         The file or the text the plan came from.
+    at : (float, float) or None
+        Where in the building it is wrong, (x, y) [m].
     """
 
     def __init__(
-        self, problem: str, place: Place = (), value: object = None, origin: str = ""
+        self,
+        problem: str,
+        place: Place = (),
+        value: object = None,
+        origin: str = "",
+        at: tuple[float, float] | None = None,
     ) -> None:
         self.problem = problem
         self.place = place
         self.value = value
         self.origin = origin
+        self.at = at
         where = format_place(place)
         if value is not None:
             where = f"{where} = {_format_value(value)}"

@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from importlib import resources
 from itertools import accumulate, pairwise
 from math import dist
@@ -12,7 +13,7 @@ from shapely.geometry import Polygon
 from floorplans.errors import Place, PlanError, format_place
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import Own, by_name, check_materials
-from floorplans.plan import FloorPlan
+from floorplans.plan import FloorPlan, UncheckedPlan
 from floorplans.toml_materials import read_materials
 from floorplans.toml_table import Table, as_points
 from floorplans.toml_writer import FORMAT_VERSION, dumps
@@ -30,6 +31,28 @@ WALL_KEYS = ("points", "material", "thickness_m", "height_m", "openings")
 OPENING_KEYS = ("kind", "offset_m", "width_m", "sill_m", "head_m", "material", "thickness_m")
 
 Corners = list[tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Unchecked:
+    """A plan as its file tells it.
+
+    Attributes
+    ----------
+    plan : UncheckedPlan
+    piece_counts : tuple of int
+        Straight walls of each of the file's polylines.
+    """
+
+    plan: UncheckedPlan
+    piece_counts: tuple[int, ...]
+
+    def place_in_file(self, place: Place) -> Place:
+        """Turn the index of a straight wall into that of the file's polyline it is a piece of."""
+        if len(place) < 2 or place[0] != "walls":
+            return place
+        tables = [table for table, count in enumerate(self.piece_counts) for _ in range(count)]
+        return ("walls", tables[int(place[1])], *place[2:])
 
 
 def builtin_names() -> tuple[str, ...]:
@@ -55,11 +78,17 @@ def load(plan: str | Path) -> FloorPlan:
     PlanError
         When there is no such plan, or it is wrong.
     """
+    text, origin = read_text(plan)
+    return loads(text, origin=origin)
+
+
+def read_text(plan: str | Path) -> tuple[str, str]:
+    """Return the text of a built-in plan or a file, and what messages call it; see `load`."""
     if plan in builtin_names():
         file = resources.files("floorplans") / "plans" / f"{plan}.toml"
-        return loads(file.read_text(encoding="utf-8"), origin=file.name)
+        return file.read_text(encoding="utf-8"), file.name
     try:
-        text = Path(plan).read_text(encoding="utf-8")
+        return Path(plan).read_text(encoding="utf-8"), str(plan)
     except UnicodeDecodeError as error:
         raise PlanError(f"not UTF-8 text: {error.reason}", origin=str(plan)) from error
     except OSError as error:
@@ -68,7 +97,6 @@ def load(plan: str | Path) -> FloorPlan:
             f"the built-in plans {', '.join(builtin_names())}",
             origin=str(plan),
         ) from error
-    return loads(text, origin=str(plan))
 
 
 def loads(text: str, *, origin: str = "<text>") -> FloorPlan:
@@ -89,11 +117,28 @@ def loads(text: str, *, origin: str = "<text>") -> FloorPlan:
     PlanError
         When the text is not TOML, or the plan is wrong.
     """
+    return from_data(_parse(text, origin), origin=origin)
+
+
+def loads_unchecked(text: str, *, origin: str = "<text>") -> Unchecked:
+    """Read a plan from TOML text that may describe an impossible building.
+
+    Raises
+    ------
+    PlanError
+        When the text is not TOML, or not of this format: a key missing, a value of a wrong type.
+    """
     try:
-        data = tomllib.loads(text)
+        return _read_unchecked(Table(_parse(text, origin), PLAN_KEYS))
+    except PlanError as error:
+        raise PlanError(error.problem, error.place, error.value, origin, error.at) from None
+
+
+def _parse(text: str, origin: str) -> dict[str, object]:
+    try:
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise PlanError(f"not valid TOML: {error}", origin=origin) from error
-    return from_data(data, origin=origin)
 
 
 def from_data(data: Mapping[str, object], *, origin: str = "<data>") -> FloorPlan:
@@ -101,7 +146,7 @@ def from_data(data: Mapping[str, object], *, origin: str = "<data>") -> FloorPla
     try:
         return _read_plan(Table(data, PLAN_KEYS))
     except PlanError as error:
-        raise PlanError(error.problem, error.place, error.value, origin) from None
+        raise PlanError(error.problem, error.place, error.value, origin, error.at) from None
 
 
 def save(plan: FloorPlan, path: str | Path) -> None:
@@ -110,6 +155,15 @@ def save(plan: FloorPlan, path: str | Path) -> None:
 
 
 def _read_plan(table: Table) -> FloorPlan:
+    unchecked = _read_unchecked(table)
+    try:
+        return FloorPlan.of(unchecked.plan)
+    except PlanError as error:
+        place = unchecked.place_in_file(error.place)
+        raise PlanError(error.problem, place, error.value, at=error.at) from None
+
+
+def _read_unchecked(table: Table) -> Unchecked:
     _check_version(table)
     height_m = table.number("height_m")
     check_positive(height_m, ("height_m",))
@@ -122,25 +176,22 @@ def _read_plan(table: Table) -> FloorPlan:
     floor, ceiling = table.text("floor_material"), table.text("ceiling_material")
     x, y, z = table.coordinates("source", "xyz")
     start_x, start_y = table.coordinates("start", "xy")
-    try:
-        return FloorPlan(
-            name=table.text("name"),
-            outline=_read_outline(table),
-            walls=tuple(wall for walls in pieces for wall in walls),
-            height_m=height_m,
-            floor_material=floor,
-            ceiling_material=ceiling,
-            source=(x, y, z),
-            start=(start_x, start_y),
-            floor_thickness_m=table.number("floor_thickness_m", _layers_m(floor, own, 0.2)),
-            ceiling_thickness_m=table.number("ceiling_thickness_m", _layers_m(ceiling, own, 0.2)),
-            origin=_read_origin(table),
-            materials=materials,
-            material_edition=table.optional_text("material_edition"),
-        )
-    except PlanError as error:
-        place = _place_in_file(error.place, [len(walls) for walls in pieces])
-        raise PlanError(error.problem, place, error.value) from None
+    plan = UncheckedPlan(
+        name=table.text("name"),
+        outline=_read_outline(table),
+        walls=tuple(wall for walls in pieces for wall in walls),
+        height_m=height_m,
+        floor_material=floor,
+        ceiling_material=ceiling,
+        source=(x, y, z),
+        start=(start_x, start_y),
+        floor_thickness_m=table.number("floor_thickness_m", _layers_m(floor, own, 0.2)),
+        ceiling_thickness_m=table.number("ceiling_thickness_m", _layers_m(ceiling, own, 0.2)),
+        origin=_read_origin(table),
+        materials=materials,
+        material_edition=table.optional_text("material_edition"),
+    )
+    return Unchecked(plan, tuple(len(walls) for walls in pieces))
 
 
 def _check_version(table: Table) -> None:
@@ -254,11 +305,3 @@ def _moved(opening: Opening, begin_m: float) -> Opening:
         offset_m, opening.width_m, opening.sill_m, opening.head_m, opening.kind,
         opening.material, opening.thickness_m,
     )  # fmt: skip
-
-
-def _place_in_file(place: Place, piece_counts: list[int]) -> Place:
-    """Turn the index of a straight wall into that of the file's polyline it is a piece of."""
-    if len(place) < 2 or place[0] != "walls":
-        return place
-    tables = [table for table, count in enumerate(piece_counts) for _ in range(count)]
-    return ("walls", tables[int(place[1])], *place[2:])
