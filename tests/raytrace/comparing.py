@@ -17,6 +17,12 @@ def placed(position: tuple[float, float, float]) -> Floats:
     return np.array(position) + np.array([*TIE_OFFSET_M, 0.0])
 
 
+def standing_at(place: Floats) -> tuple[float, float, float]:
+    """Return where to put a transmitter so that the tracer takes it to stand at a place [m]."""
+    x, y, z = place - np.array([*TIE_OFFSET_M, 0.0])
+    return float(x), float(y), float(z)
+
+
 def facets_of(building: Building) -> Facets:
     """Return the building as the brute force sees it."""
     return Facets(building.triangles, building.triangle_slab)
@@ -33,6 +39,9 @@ def assert_same_paths(ours: Found, theirs: Found, tolerance_m: float) -> None:
         np.column_stack([p.receiver, p.kinds, p.vertices.reshape(-1, 3 * p.vertices.shape[1])])
         for p in (ours, theirs)
     )
+    assert len(a) == len(b) or min(len(a), len(b)), f"{len(a)} paths, expected {len(b)}"
+    if not len(a):
+        return
     far_a, _ = cKDTree(b).query(a)
     far_b, match = cKDTree(a).query(b)
     extra, missing = (p[far > tolerance_m] for p, far in ((a, far_a), (b, far_b)))
