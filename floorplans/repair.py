@@ -14,8 +14,11 @@ Openings stay where they are in the plan.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+
+import numpy as np
+from scipy.spatial import cKDTree
 
 from floorplans.repair_ends import snap_ends
 from floorplans.repair_lines import merge_lines
@@ -94,7 +97,18 @@ def split_at_junctions(walls: Sequence[Wall]) -> tuple[Wall, ...]:
             continue
         for low, high in pairwise(stops):
             pieces.append(moved_wall([wall], wall.point_at(low), wall.point_at(high)))
-    return tuple(pieces)
+    return _meeting_exactly(pieces)
+
+
+def _meeting_exactly(walls: Sequence[Wall]) -> tuple[Wall, ...]:
+    """Give ends that are the same point but for rounding the very same coordinates."""
+    ends = np.array([end for wall in walls for end in (wall.start, wall.end)]).reshape(-1, 2)
+    same = np.arange(len(ends))
+    for i, j in sorted(cKDTree(ends).query_pairs(TOLERANCE_M)) if len(ends) else ():
+        same[j] = min(same[j], same[i])
+    points = [(float(x), float(y)) for x, y in ends[same]]
+    pairs = zip(walls, points[::2], points[1::2], strict=True)
+    return tuple(replace(wall, start=start, end=end) for wall, start, end in pairs)
 
 
 def _stops(wall: Wall, cuts: Iterable[float]) -> list[float]:

@@ -36,7 +36,11 @@ class _Piece:
 
 
 def merge_lines(
-    walls: Sequence[Wall], reach_m: float, thickness_share: float, changes: list[Change]
+    walls: Sequence[Wall],
+    reach_m: float,
+    thickness_share: float,
+    changes: list[Change],
+    sideways_share: float = _THICKNESS_SHARE,
 ) -> tuple[Wall, ...]:
     """Make one wall of walls in a line, and let no two walls run along each other.
 
@@ -49,13 +53,15 @@ def merge_lines(
         Walls are joined where their thicknesses differ by at most this share.
     changes : list of Change
         What is done is added here.
+    sideways_share : float
+        Share of its thickness by which a wall may besides be moved sideways.
 
     Returns
     -------
     tuple of Wall
     """
     merged: list[Wall] = []
-    for group in _groups(walls, reach_m):
+    for group in _groups(walls, reach_m, sideways_share):
         if len(group) == 1:
             merged.append(walls[group[0]])
         else:
@@ -63,7 +69,7 @@ def merge_lines(
     return tuple(merged)
 
 
-def _groups(walls: Sequence[Wall], reach_m: float) -> Iterator[list[int]]:
+def _groups(walls: Sequence[Wall], reach_m: float, sideways_share: float) -> Iterator[list[int]]:
     """Indices of the walls of each line, the longest wall first."""
     lines = wall_lines(walls)
     tree = shapely.STRtree(lines)
@@ -76,24 +82,29 @@ def _groups(walls: Sequence[Wall], reach_m: float) -> Iterator[list[int]]:
         group, todo = [leader], [leader]
         while todo:
             near = tree.query(
-                lines[todo.pop()], "dwithin", distance=reach_m + _THICKNESS_SHARE * thickest
+                lines[todo.pop()], "dwithin", distance=reach_m + sideways_share * thickest
             )
             members = [i for i in sorted(near.tolist()) if i in free]
             for i in members:
-                if _in_line(walls[leader], walls[i], [walls[k] for k in group], reach_m):
+                sideways_m = reach_m + sideways_share * min(
+                    walls[leader].thickness_m, walls[i].thickness_m
+                )
+                members_here = [walls[k] for k in group]
+                if _in_line(walls[leader], walls[i], members_here, reach_m, sideways_m):
                     free.remove(i)
                     group.append(i)
                     todo.append(i)
         yield group
 
 
-def _in_line(leader: Wall, wall: Wall, group: Sequence[Wall], reach_m: float) -> bool:
+def _in_line(
+    leader: Wall, wall: Wall, group: Sequence[Wall], reach_m: float, sideways_m: float
+) -> bool:
     """Whether a wall lies on the leader's line and touches the group, up to the reach."""
     (ux, uy), (vx, vy) = direction(leader), direction(wall)
     if abs(ux * vy - uy * vx) > _MAX_SINE:
         return False
     offsets = [along_across(leader, end) for end in (wall.start, wall.end)]
-    sideways_m = reach_m + _THICKNESS_SHARE * min(leader.thickness_m, wall.thickness_m)
     if max(abs(across) for _, across in offsets) > sideways_m:
         return False
     low, high = sorted(s for s, _ in offsets)

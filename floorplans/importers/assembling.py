@@ -28,6 +28,7 @@ from floorplans.importers.placing import SOURCE_HEIGHT_M, Places, place
 from floorplans.materials import MATERIALS
 from floorplans.plan import FloorPlan
 from floorplans.repair import REACH_M, repair_walls
+from floorplans.repair_lines import merge_lines
 from floorplans.repair_walls import Change, tidy_point
 from floorplans.wall_checks import check_positive
 from floorplans.walls import TOLERANCE_M, Wall
@@ -149,7 +150,7 @@ def _building(
     reach_m = options.tolerance_m or REACH_M
     mended = repair_walls(bridge(walls, openings), reach_m, THICKNESS_SHARE)
     storey = enclose(mended.walls, draft.outline, height_m)
-    joined = repair_walls(storey.walls, reach_m=10 * TOLERANCE_M).walls
+    joined = merge_lines(storey.walls, 10 * TOLERANCE_M, 0.0, [], sideways_share=0.0)
     storey = Storey(storey.outline, joined, (*mended.changes, *storey.changes))
     origin = draft.origin
     if origin is None:

@@ -8,10 +8,10 @@ from itertools import product
 from math import dist, hypot, radians, sin
 
 import shapely
-from shapely.geometry import Point, Polygon
+from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from floorplans.importers.draft import RawOpening
-from floorplans.importers.enclosing import on_edge
 from floorplans.repair_walls import Change, along_across, direction, tidy_point, wall_lines
 from floorplans.walls import TOLERANCE_M, Opening, Wall
 
@@ -26,6 +26,7 @@ _BESIDE_M = 0.3
 """How far beside its wall's body the middle of an opening may be drawn [m]."""
 _JOIN_M = 0.1
 """Openings of one kind nearer than this are one, such as the leaves of a double door [m]."""
+_ON_EDGE_M = 1e-5
 _MIN_SHARE = 0.5
 """Share of an opening's width that must lie in its wall."""
 
@@ -144,7 +145,7 @@ def hang(walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon
     thickest_m = max(wall.thickness_m for wall in walls)
     changes: list[Change] = []
     shares: list[list[Opening]] = [list(wall.openings) for wall in walls]
-    edge = on_edge(walls, outline).tolist()
+    edge = outline.boundary.buffer(_ON_EDGE_M)
     for raw in openings:
         near = tree.query(Point(raw.centre), "dwithin", distance=thickest_m / 2 + _BESIDE_M)
         fitting = [i for i in near.tolist() if _parallel(raw, walls[i]) and _holds(walls[i], raw)]
@@ -154,7 +155,7 @@ def hang(walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon
             )
             continue
         i = min(fitting, key=lambda i: (abs(along_across(walls[i], raw.centre)[1]), i))
-        _add(shares[i], _opening(raw, walls[i], edge[i]))
+        _add(shares[i], _opening(raw, walls[i], edge))
     hung = [
         replace(wall, openings=tuple(sorted(share, key=lambda o: (o.offset_m, o.sill_m))))
         for wall, share in zip(walls, shares, strict=True)
@@ -162,7 +163,7 @@ def hang(walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon
     return Hung(tuple(hung), tuple(changes))
 
 
-def _opening(raw: RawOpening, wall: Wall, in_outline: bool) -> Opening:
+def _opening(raw: RawOpening, wall: Wall, edge: BaseGeometry) -> Opening:
     """Opening of a wall, with defaults for what the file does not tell."""
     s, _ = along_across(wall, raw.centre)
     low, high = max(s - raw.width_m / 2, 0.0), min(s + raw.width_m / 2, wall.length_m)
@@ -174,7 +175,7 @@ def _opening(raw: RawOpening, wall: Wall, in_outline: bool) -> Opening:
     material, thickness_m = raw.material, raw.thickness_m
     if material is None and window:
         material, thickness_m = WINDOW_MATERIAL, thickness_m or WINDOW_THICKNESS_M
-    elif material is None and in_outline:
+    elif material is None and _on_edge(wall, low, high, edge):
         material, thickness_m = DOOR_MATERIAL, thickness_m or DOOR_THICKNESS_M
     return Opening(
         offset_m=low,
@@ -185,6 +186,12 @@ def _opening(raw: RawOpening, wall: Wall, in_outline: bool) -> Opening:
         material=material,
         thickness_m=thickness_m if material is not None else None,
     )
+
+
+def _on_edge(wall: Wall, low: float, high: float, edge: BaseGeometry) -> bool:
+    """Whether any of a stretch of a wall lies in the edge of the outline."""
+    stretch = LineString([wall.point_at(low), wall.point_at(high)])
+    return edge.intersection(stretch).length > 3 * _ON_EDGE_M
 
 
 def _add(share: list[Opening], new: Opening) -> None:
