@@ -1,0 +1,169 @@
+"""What a GeoJSON feature is: wall, door, window, room, outline or nothing of ours; and its level.
+
+Files name the kind of a feature in many ways. Known are the feature types of IMDF, the tags of
+OpenStreetMap's simple indoor tagging, and a word for it under one of `KIND_KEYS`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, Literal, cast, get_args
+
+from floorplans.errors import PlanError, unknown_name
+from floorplans.importers.draft import ImportOptions
+from floorplans.materials import MATERIALS
+
+Kind = Literal["wall", "door", "window", "passage", "room", "outline", "level", "ignore"]
+
+KINDS: tuple[Kind, ...] = get_args(Kind)
+
+KIND_KEYS = (
+    "indoor", "kind", "feature_type", "featureType", "type", "class", "category", "element",
+    "object", "layer",
+)  # fmt: skip
+
+WORDS: Mapping[str, Kind] = {
+    "wall": "wall", "walls": "wall", "partition": "wall", "column": "wall", "pillar": "wall",
+    "columns": "wall", "pillars": "wall", "structure": "wall",
+    "door": "door", "doors": "door", "entrance": "door", "gate": "door",
+    "opening": "door", "openings": "door",
+    "window": "window", "windows": "window", "glazing": "window",
+    "passage": "passage", "doorway": "passage", "archway": "passage",
+    "room": "room", "rooms": "room", "unit": "room", "units": "room", "corridor": "room",
+    "space": "room", "hall": "room", "office": "room", "walkway": "room", "hallway": "room",
+    "outline": "outline", "footprint": "outline", "perimeter": "outline", "building": "outline",
+    "level": "level", "floor": "level", "storey": "level", "story": "level",
+}  # fmt: skip
+"""Last word of a name (building_outline, exterior-wall) -> what it is."""
+
+LEVEL_KEYS = ("level", "level_id", "levelId", "level_name", "floor", "storey", "building_level")
+
+OPEN_UNITS = frozenset({"walkway", "corridor", "hallway", "opentobelow", "lobby", "area"})
+"""Rooms of these categories have no wall where they border on each other."""
+
+Json = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class FeatureClass:
+    """What a feature is.
+
+    Attributes
+    ----------
+    kind : Kind or None
+        None where nothing tells.
+    label : str
+        What the file calls it, for the report.
+    material : str or None
+    is_open : bool
+        Whether it is a room without walls towards others of its kind.
+    """
+
+    kind: Kind | None
+    label: str
+    material: str | None = None
+    is_open: bool = False
+
+
+def classify(feature: Json, options: ImportOptions) -> FeatureClass:
+    """Tell what a feature is, by the user's layers first, by what the file says then."""
+    properties = properties_of(feature)
+    words = [text for key in KIND_KEYS for text in _texts(properties.get(key))]
+    words = [*_texts(feature.get("feature_type")), *words, *_osm_words(properties)]
+    label = words[0] if words else "(no kind)"
+    chosen = {name.lower(): target for name, target in options.layers.items()}
+    for word in words:
+        if word.lower() in chosen:
+            kind, material = parse_target(chosen[word.lower()])
+            return FeatureClass(kind, word, material)
+    material = _material(properties)
+    if words and words[0] in ("unit", "fixture"):
+        return _imdf(words[0], str(properties.get("category", "")), material)
+    for word in words:
+        if kind := _kind_of(word):
+            return FeatureClass(kind, word, material, word.lower() in OPEN_UNITS)
+    return FeatureClass(None, label)
+
+
+def parse_target(target: str) -> tuple[Kind, str | None]:
+    """Read KIND or KIND:MATERIAL; raise `PlanError` for one that is not known."""
+    name, _, material = target.partition(":")
+    for kind in KINDS:
+        if kind == name:
+            break
+    else:
+        raise PlanError(unknown_name("kind", name, KINDS), ("layers",), target)
+    if material and material not in MATERIALS:
+        raise PlanError(unknown_name("material", material, MATERIALS), ("layers",), target)
+    return kind, material or None
+
+
+def levels_of(feature: Json) -> frozenset[str]:
+    """Levels a feature lies on, as the file calls them; none where it does not say."""
+    properties = properties_of(feature)
+    for key in LEVEL_KEYS:
+        value = properties.get(key)
+        if isinstance(value, str | int | float) and not isinstance(value, bool):
+            return frozenset(_level_names(str(value)))
+    return frozenset()
+
+
+def number_of(feature: Json, *keys: str) -> float | None:
+    """Return the first number above 0 under one of the keys, which may be text such as 2.5 m."""
+    properties = properties_of(feature)
+    for key in keys:
+        match = re.match(r"\s*(\d+(?:\.\d+)?)\s*m?\s*$", str(properties.get(key)))
+        if match and isfinite(number := float(match[1])) and number > 0:
+            return number
+    return None
+
+
+def properties_of(feature: Json) -> Json:
+    """Return a feature's properties, empty where there are none."""
+    properties = feature.get("properties")
+    return cast("Json", properties) if isinstance(properties, dict) else {}
+
+
+def _imdf(feature_type: str, category: str, material: str | None) -> FeatureClass:
+    label = f"{feature_type}/{category}" if category else feature_type
+    if category in ("structure", "wall"):
+        return FeatureClass("wall", label, material)
+    kind = "room" if feature_type == "unit" else None
+    return FeatureClass(kind, label, material, category in OPEN_UNITS)
+
+
+def _osm_words(properties: Json) -> list[str]:
+    return [
+        key
+        for key in ("door", "window", "entrance")
+        if properties.get(key, "no") not in ("no", None, False)
+    ]
+
+
+def _kind_of(word: str) -> Kind | None:
+    parts = re.findall(r"[a-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower())
+    return WORDS.get(parts[-1]) if parts else None
+
+
+def _texts(value: object) -> list[str]:
+    return [value] if isinstance(value, str) and value else []
+
+
+def _material(properties: Json) -> str | None:
+    name = str(properties.get("material", "")).strip().lower()
+    return name if name in MATERIALS else None
+
+
+def _level_names(text: str) -> list[str]:
+    """Split OpenStreetMap's lists and ranges of levels: 0;1 and 0-2."""
+    names: list[str] = []
+    for part in text.split(";"):
+        low_high = re.fullmatch(r"\s*(-?\d{1,3})-(-?\d{1,3})\s*", part)
+        if low_high:
+            names += [str(n) for n in range(int(low_high[1]), int(low_high[2]) + 1)]
+        else:
+            names.append(part.strip())
+    return names

@@ -1,0 +1,156 @@
+"""Coordinates of GeoJSON -> metres in a local frame whose place on the Earth is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, cast
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import shape
+from shapely.geometry.base import BaseGeometry
+
+from floorplans.errors import PlanError
+from floorplans.georeference import GeoOrigin
+
+UNITS_M: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
+"""Names of units -> length [m]."""
+
+MAX_SIZE_M = 3000.0
+"""The largest building [m]."""
+
+MAX_POINTS = 1_000_000
+
+Points = NDArray[np.float64]
+
+
+def geometry_of(feature: Mapping[str, Any], index: int) -> BaseGeometry:
+    """Return a feature's geometry in the file's coordinates, empty where it has none.
+
+    Raises
+    ------
+    PlanError
+        When it is no geometry of GeoJSON, or a coordinate is missing or not finite.
+    """
+    place = ("features", index, "geometry")
+    geometry = feature.get("geometry")
+    if geometry is None:
+        return shapely.GeometryCollection()
+    try:
+        made = shapely.force_2d(shape(cast("dict[str, Any]", geometry)))
+    except RecursionError as error:
+        raise PlanError("collections are nested too deep", place) from error
+    except (
+        KeyError,
+        TypeError,
+        ValueError,
+        AttributeError,
+        IndexError,
+        shapely.GEOSException,
+    ) as error:
+        raise PlanError(f"not a geometry of GeoJSON ({error})", place) from error
+    if not np.isfinite(shapely.get_coordinates(made)).all():
+        raise PlanError("a coordinate is not a finite number", place)
+    return made if made.is_valid else shapely.make_valid(made)
+
+
+def to_metres(
+    geometries: Sequence[BaseGeometry], crs: str | None, unit: str | None
+) -> tuple[list[BaseGeometry], GeoOrigin | None]:
+    """Bring geometries into a local frame in metres.
+
+    Parameters
+    ----------
+    geometries : sequence of shapely geometries
+        In the file's coordinates.
+    crs : str or None
+        Name of their reference system, "" for none on the Earth, None where the file does not say:
+        then they are degrees, or metres where they cannot be.
+    unit : str or None
+        One of `UNITS_M` for coordinates that are lengths in a plane; it goes before `crs`.
+
+    Returns
+    -------
+    (list of shapely geometry, GeoOrigin or None)
+        In metres, and the place of (0, 0); None where the coordinates were lengths already.
+    """
+    n_points = sum(shapely.get_num_coordinates(geometry) for geometry in geometries)
+    if n_points == 0:
+        raise PlanError("no feature has coordinates", ("features",))
+    if n_points > MAX_POINTS:
+        raise PlanError(f"{n_points} points, at most {MAX_POINTS} are read; cut out one building")
+    if unit is not None and unit not in UNITS_M:
+        raise PlanError(f"unknown unit; known are {', '.join(UNITS_M)}", ("unit",), unit)
+    if unit is not None or crs == "" or (crs is None and not _may_be_degrees(geometries)):
+        return _scaled(geometries, UNITS_M[unit or "m"], unit), None
+    degrees = geometries if crs is None else _degrees(geometries, crs)
+    _check_degrees(degrees)
+    x_min, y_min, _, _ = shapely.total_bounds(list(degrees))
+    origin = GeoOrigin(round(float(x_min), 9), round(float(y_min), 9))
+    return [shapely.transform(geometry, origin.to_plan) for geometry in degrees], origin
+
+
+def _scaled(
+    geometries: Sequence[BaseGeometry], unit_m: float, unit: str | None
+) -> list[BaseGeometry]:
+    lengths = _size(geometries) * unit_m
+    if lengths.max() > MAX_SIZE_M:
+        better = [name for name, m in UNITS_M.items() if lengths.max() / unit_m * m <= MAX_SIZE_M]
+        hint = f"; if coordinates are in {better[0]}, say --unit {better[0]}" if better else ""
+        raise PlanError(
+            f"the building is {_shown(lengths)}, taken as {unit or 'm'}{hint}", ("unit",)
+        )
+    if not lengths.max() >= 1.0:
+        raise PlanError(
+            f"the building is {lengths.max():.3g} m long; say in which unit coordinates are: "
+            f"{', '.join(UNITS_M)}",
+            ("unit",),
+        )
+    return [shapely.transform(geometry, lambda points: points * unit_m) for geometry in geometries]
+
+
+def _may_be_degrees(geometries: Sequence[BaseGeometry]) -> bool:
+    x_min, y_min, x_max, y_max = shapely.total_bounds(list(geometries))
+    return bool(max(-x_min, x_max) <= 180.0 and max(-y_min, y_max) <= 90.0)
+
+
+def _check_degrees(degrees: Sequence[BaseGeometry]) -> None:
+    if not _may_be_degrees(degrees):
+        raise PlanError("longitudes lie in -180 to 180, latitudes in -90 to 90 [degrees]", ("crs",))
+    latitude = shapely.total_bounds(list(degrees))[1]
+    size = _size(degrees) * 111_320.0 * np.array([np.cos(np.radians(latitude)), 1.0])
+    if size.max() > MAX_SIZE_M:
+        raise PlanError(
+            f"the features span {_shown(size)}, taken as longitude and latitude; a building spans "
+            f"at most {MAX_SIZE_M / 1000:g} km: if coordinates are metres, say --unit m, else cut "
+            "out one building",
+            ("unit",),
+        )
+
+
+def _degrees(geometries: Sequence[BaseGeometry], crs: str) -> Sequence[BaseGeometry]:
+    """Turn coordinates of a named reference system into longitude and latitude."""
+    from pyproj import Transformer
+    from pyproj.exceptions import ProjError
+
+    try:
+        to_wgs = Transformer.from_crs(crs, "OGC:CRS84", always_xy=True)
+    except ProjError as error:
+        raise PlanError(f"unknown reference system; {error}", ("crs",), crs) from error
+    turned = [
+        shapely.transform(g, lambda p: np.column_stack(to_wgs.transform(p[:, 0], p[:, 1])))
+        for g in geometries
+    ]
+    if not all(np.isfinite(shapely.get_coordinates(geometry)).all() for geometry in turned):
+        raise PlanError("coordinates lie outside this reference system", ("crs",), crs)
+    return turned
+
+
+def _size(geometries: Sequence[BaseGeometry]) -> Points:
+    x_min, y_min, x_max, y_max = shapely.total_bounds(list(geometries))
+    return np.array([x_max - x_min, y_max - y_min])
+
+
+def _shown(size_m: Points) -> str:
+    return f"{size_m[0] / 1000:.3g} km x {size_m[1] / 1000:.3g} km"

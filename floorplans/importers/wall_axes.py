@@ -1,0 +1,166 @@
+"""Centre lines that lie on about one line, put on that line and joined."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import LineString
+from shapely.geometry.base import BaseGeometry
+
+from floorplans.walls import Point
+
+_SAME_DIRECTION = np.cos(np.radians(4.0))
+_DOUBLE_DIRECTION = np.cos(np.radians(12.0))
+_DOUBLE_SHARE = 0.5  # of an axis beside a longer one, within the wall, from which it is a double
+_OFFSET_SHARE = 0.4  # of the thicker wall's thickness by which axes of one line may lie apart
+_LIKE = 1.4  # ratio of thicknesses up to which two stretches of a line are one wall
+_SHORT = 2.0  # times its thickness, a stretch takes on the thickness of its neighbour
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A straight centre line [m] with the thickness of its wall [m]."""
+
+    start: Point
+    end: Point
+    thickness_m: float
+
+    @property
+    def vector(self) -> NDArray[np.float64]:
+        """From start to end, (2,) [m]."""
+        return np.array(self.end) - np.array(self.start)
+
+    @property
+    def length_m(self) -> float:
+        """Length [m]."""
+        return float(np.hypot(*self.vector))
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """Part of a line from `low` to `high` along it [m]."""
+
+    low: float
+    high: float
+    thickness_m: float
+
+    @property
+    def length_m(self) -> float:
+        return self.high - self.low
+
+
+def on_common_lines(axes: list[Axis], solid: BaseGeometry) -> list[Axis]:
+    """Put axes on common lines, and join those of like thickness with only solid between them.
+
+    Parameters
+    ----------
+    axes : list of Axis
+    solid : shapely geometry
+        All wall [m].
+
+    Returns
+    -------
+    list of Axis
+    """
+    return _without_doubles([a for group in _groups(axes) for a in _on_one_line(group, solid)])
+
+
+def _groups(axes: list[Axis]) -> list[list[Axis]]:
+    """Group axes that lie on about one line with the longest of them."""
+    groups: list[list[Axis]] = []
+    for axis in sorted(axes, key=lambda axis: -axis.length_m):
+        for group in groups:
+            if _on_line_of(group[0], axis):
+                group.append(axis)
+                break
+        else:
+            groups.append([axis])
+    return groups
+
+
+def _on_line_of(first: Axis, other: Axis) -> bool:
+    along = first.vector / first.length_m
+    if abs(other.vector @ along) < _SAME_DIRECTION * other.length_m:
+        return False
+    apart = max(first.thickness_m, other.thickness_m) * _OFFSET_SHARE
+    across = np.array([-along[1], along[0]])
+    ends = np.array([other.start, other.end]) - np.array(first.start)
+    return bool(np.abs(ends @ across).max() <= apart)
+
+
+def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
+    """Put a group on its line of least squares, in the direction of its longest axis."""
+    lengths = np.array([axis.length_m for axis in group])
+    towards = np.array([axis.vector * np.sign(axis.vector @ group[0].vector) for axis in group])
+    along = towards.sum(axis=0) / np.hypot(*towards.sum(axis=0))
+    across = np.array([-along[1], along[0]])
+    ends = np.array([[axis.start, axis.end] for axis in group])
+    offset = float(np.average((ends @ across).mean(axis=1), weights=lengths))
+
+    def point(s: float) -> Point:
+        x, y = along * s + across * offset
+        return float(x), float(y)
+
+    def is_solid(low: float, high: float) -> bool:
+        return high <= low or LineString([point(low), point(high)]).within(solid)
+
+    s = np.sort(ends @ along, axis=1)
+    stretches = [
+        _Stretch(float(low), float(high), axis.thickness_m)
+        for (low, high), axis in sorted(
+            zip(s.tolist(), group, strict=True), key=lambda pair: pair[0]
+        )
+    ]
+    return [
+        Axis(point(stretch.low), point(stretch.high), stretch.thickness_m)
+        for stretch in _merged(stretches, is_solid)
+    ]
+
+
+def _without_doubles(axes: list[Axis]) -> list[Axis]:
+    """Leave out axes that run within the wall of a longer one."""
+    kept: list[Axis] = []
+    for axis in sorted(axes, key=lambda axis: -axis.length_m):
+        if not any(_covers(longer, axis) for longer in kept):
+            kept.append(axis)
+    return kept
+
+
+def _covers(longer: Axis, axis: Axis) -> bool:
+    along = longer.vector / longer.length_m
+    if abs(axis.vector @ along) < _DOUBLE_DIRECTION * axis.length_m:
+        return False
+    ends = np.array([axis.start, axis.end]) - np.array(longer.start)
+    s = np.sort(ends @ along)
+    beside = np.abs(ends @ np.array([-along[1], along[0]])).max()
+    shared = min(s[1], longer.length_m) - max(s[0], 0.0)
+    near = beside <= max(longer.thickness_m, axis.thickness_m) / 2
+    return bool(near and shared > _DOUBLE_SHARE * axis.length_m)
+
+
+def _merged(stretches: list[_Stretch], is_solid: Callable[[float, float], bool]) -> list[_Stretch]:
+    """Join neighbours of like thickness, and let those of unlike thickness touch."""
+    done = stretches[:1]
+    for following in stretches[1:]:
+        last = done[-1]
+        if following.high <= last.high:
+            continue
+        if not is_solid(last.high, following.low):
+            done.append(following)
+        elif _alike(last, following):
+            thicker = max(last, following, key=lambda stretch: stretch.length_m)
+            done[-1] = _Stretch(last.low, following.high, thicker.thickness_m)
+        else:
+            between = (last.high + following.low) / 2
+            done[-1] = replace(last, high=between)
+            done.append(replace(following, low=between))
+    return done
+
+
+def _alike(a: _Stretch, b: _Stretch) -> bool:
+    short = any(stretch.length_m < _SHORT * stretch.thickness_m for stretch in (a, b))
+    low, high = sorted((a.thickness_m, b.thickness_m))
+    return short or high <= _LIKE * low
