@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from floorplans.repair_ends import snap_ends
 from floorplans.repair_lines import merge_lines
@@ -104,7 +104,7 @@ def _meeting_exactly(walls: Sequence[Wall]) -> tuple[Wall, ...]:
     """Give ends that are the same point but for rounding the very same coordinates."""
     ends = np.array([end for wall in walls for end in (wall.start, wall.end)]).reshape(-1, 2)
     same = np.arange(len(ends))
-    for i, j in sorted(cKDTree(ends).query_pairs(TOLERANCE_M)) if len(ends) else ():
+    for i, j in sorted(KDTree(ends).query_pairs(TOLERANCE_M)) if len(ends) else ():
         same[j] = min(same[j], same[i])
     points = [(float(x), float(y)) for x, y in ends[same]]
     pairs = zip(walls, points[::2], points[1::2], strict=True)
