@@ -108,7 +108,7 @@ def box_sides(polygon: BaseGeometry) -> tuple[float, float]:
 
 
 def _ring_walls(block: Polygon) -> list[RawWall]:
-    thickness_m = max(box_sides(block)[0] / 2, 1e-3)
+    thickness_m = min(max(box_sides(block)[0], 2e-3), MAX_THICKNESS_M) / 2
     corners = [(float(x), float(y)) for x, y in block.exterior.coords]
     return [RawWall(a, b, thickness_m) for a, b in pairwise(corners)]
 
