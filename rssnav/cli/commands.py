@@ -53,6 +53,14 @@ COMMANDS = {
         ("train",),
         "Train an agent to fly from a plan's start to its source, many times over.",
     ),
+    "fly": Entry(
+        ("fly",),
+        "Show how a trained UAV flies: its way over the map, and the RSS it reads, step by step.",
+    ),
+    "explore": Entry(
+        ("explore",),
+        "Open the explorer in the browser: drag the source, see its map, train a UAV.",
+    ),
     "experiments": Entry(
         ("experiments",),
         "Run the whole paper, or a study beyond it: maps, trainings, figures, tables, a report.",

@@ -1,0 +1,65 @@
+"""``rssnav explore``: a page in the browser to drag a source and train a UAV."""
+
+from typing import Annotated
+
+import typer
+
+from rssnav.cli.console import note
+from rssnav.cli.failures import COULD_NOT, complain
+from rssnav.cli.options import Plan, examples
+
+PORT = 5006
+ADDRESS = "127.0.0.1"
+MISSING = 'the explorer needs Panel and Bokeh; install them with `pip install "rssnav[explore]"`'
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the command ``explore``."""
+    parent.command(
+        "explore",
+        epilog=examples("rssnav explore", "rssnav explore scenario1 --port 8000 --no-browser"),
+    )(explore)
+
+
+def explore(
+    plan: Plan = "flat",
+    port: Annotated[
+        int,
+        typer.Option("--port", metavar="N", min=0, max=65535, help="Port; 0 for any that is free."),
+    ] = PORT,
+    address: Annotated[
+        str,
+        typer.Option(
+            "--address",
+            metavar="ADDRESS",
+            help="Where to listen; by default only this computer can open the page.",
+        ),
+    ] = ADDRESS,
+    allow_origin: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--allow-origin",
+            metavar="HOST[:PORT]",
+            help="Another name under which browsers may open the page; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
+    ] = True,
+) -> None:
+    """Open the explorer in the browser: drag the source, see its map, train a UAV.
+
+    Ctrl-C ends it.
+    """
+    import floorplans
+
+    try:
+        from rssnav.explorer.server import ServerSettings, serve
+    except ModuleNotFoundError as error:
+        if error.name not in ("panel", "bokeh"):
+            raise
+        complain(MISSING)
+        raise typer.Exit(COULD_NOT) from error
+    settings = ServerSettings(port, address, tuple(allow_origin or ()), browser)
+    serve(floorplans.load(plan), settings, lambda url: note(f"the explorer is at {url}"))

@@ -1,0 +1,97 @@
+"""The strongest paths to a chosen cell: a table, and lines in the plan and in three dimensions."""
+
+from html import escape
+
+import numpy as np
+import panel as pn
+from numpy.typing import NDArray
+
+from floorplans import FloorPlan
+from floorplans.viewer_3d import add_lines, add_points, plan_scene, scene_html
+from rssnav.explorer.map_figure import path_colours
+from rssnav.explorer.session import Session
+from rssnav.explorer.styles import WIDGETS, decibels, pairs, problem, thousands
+from rssnav.explorer.tracing import CellPaths
+
+TOP = 12
+_INVITATION = '<p class="quiet">Click a cell of the map to see its strongest paths.</p>'
+
+
+class CellPanel:
+    """Table of the strongest paths.
+
+    Parameters
+    ----------
+    session : Session
+
+    Attributes
+    ----------
+    view : panel.Column
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._table = pn.pane.HTML(_INVITATION, stylesheets=WIDGETS, sizing_mode="stretch_width")
+        self.view = pn.Column(self._table, sizing_mode="stretch_width")
+
+    def show(self) -> None:
+        """Show the session's newest paths."""
+        finder = self._session.paths
+        if finder.problem:
+            self._table.object = problem(finder.problem)
+        elif finder.latest is not None:
+            self._table.object = _facts(finder.latest) + _rows(finder.latest)
+        else:
+            self._table.object = "<p>Tracing the paths ...</p>" if finder.busy else _INVITATION
+
+
+def strongest(found: CellPaths, top: int = TOP) -> list[NDArray[np.float64]]:
+    """Vertices (n_i, 3) [m] of the strongest paths, source and receiver included."""
+    paths = found.paths
+    return [paths.vertices[k, : paths.n_interactions[k] + 2] for k in range(min(top, len(paths)))]
+
+
+def page_3d(plan: FloorPlan, found: CellPaths | None) -> str:
+    """HTML of a frame with the plan, and the strongest paths to a cell if one is chosen."""
+    scene = plan_scene(plan, opacity=0.55)
+    title = plan.name
+    if found is not None:
+        lines = strongest(found)
+        add_lines(scene, "paths", lines, path_colours(found.power_dbm[: len(lines)]), 0.035)
+        add_points(scene, "receiver", [found.receiver], "#1a1a1a")
+        x, y, z = found.receiver
+        title = f"{plan.name}: paths to ({x:g}, {y:g}, {z:g}) m"
+    page = escape(scene_html(scene, title))
+    style = "width:100%;height:100%;border:0;border-radius:8px"
+    return f'<iframe title="3D" sandbox="allow-scripts" srcdoc="{page}" style="{style}"></iframe>'
+
+
+def _facts(found: CellPaths) -> str:
+    x, y, z = found.receiver
+    return pairs(
+        [
+            ("cell", f"({x:g}, {y:g}, {z:g}) m"),
+            ("RSS", decibels(found.rss_dbm)),
+            ("paths", thousands(len(found.paths))),
+            ("delay spread", f"{1e9 * found.delay_spread_s:.1f} ns"),
+        ]
+    )
+
+
+def _rows(found: CellPaths) -> str:
+    """HTML of the table, strongest path first."""
+    paths, top = found.paths, min(TOP, len(found.paths))
+    colours = path_colours(found.power_dbm[:top])
+    rows = [
+        f'<tr><td><i class="swatch" style="background:{colours[k]}"></i>{k + 1}</td>'
+        f"<td>{decibels(found.power_dbm[k], '')}</td><td>{paths.length_m[k]:.2f}</td>"
+        f"<td>{1e9 * paths.delay_s[k]:.1f}</td><td>{paths.sequence(k)}</td></tr>"
+        for k in range(top)
+    ]
+    heads = ("path", "power [dBm]", "length [m]", "delay [ns]", "way")
+    head = "".join(f"<th>{name}</th>" for name in heads)
+    note = "R reflection, D diffraction, LOS line of sight"
+    return (
+        f'<table class="paths"><thead><tr>{head}</tr></thead><tbody>{"".join(rows)}</tbody></table>'
+        f'<p class="quiet">{note}</p>'
+    )

@@ -1,0 +1,118 @@
+"""Play the flights of a training over the map, episode by episode."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import panel as pn
+from numpy.typing import NDArray
+
+from rssnav.explorer.styles import WIDGETS
+from rssnav.explorer.training import Flight, LiveTraining
+
+FRAMES = 30
+"""Most frames of a flight."""
+
+FRAME_MS = 50
+
+
+class FlightPlayer:
+    """Buttons and sliders that lead from frame to frame, and an episode chooser.
+
+    Parameters
+    ----------
+    show : callable
+        Called with a flight and the number of steps it is shown after.
+
+    Attributes
+    ----------
+    view : panel.Column
+    """
+
+    def __init__(self, show: Callable[[Flight, int], None]) -> None:
+        self._show = show
+        self._training: LiveTraining | None = None
+        self._first = np.zeros(1, dtype=np.int64)
+        self._going = False
+        self._episode = pn.widgets.DiscreteSlider(
+            name="Episode", options=[1], stylesheets=WIDGETS, sizing_mode="stretch_width"
+        )
+        self._player = pn.widgets.Player(
+            start=0,
+            end=0,
+            interval=FRAME_MS,
+            show_loop_controls=False,
+            stylesheets=WIDGETS,
+            sizing_mode="stretch_width",
+            height=72,
+        )
+        self._text = pn.pane.HTML("", stylesheets=WIDGETS, sizing_mode="stretch_width")
+        self._player.param.watch(self._go, "value")
+        self._episode.param.watch(self._jump, "value")
+        self.view = pn.Column(
+            self._text, self._player, self._episode, visible=False, sizing_mode="stretch_width"
+        )
+
+    def follow(self, training: LiveTraining | None) -> None:
+        """Take the flights there are by now; while it learns, show the latest."""
+        flights = [] if training is None else training.flights[:]
+        if training is self._training and len(flights) + 1 == self._first.size:
+            return
+        self._training = training
+        self._first = first_frames([flight.steps for flight in flights])
+        self.view.visible = bool(flights)
+        if not flights:
+            return
+        self._episode.options = [flight.episode for flight in flights]
+        self._player.end = int(self._first[-1]) - 1
+        if self._player.direction == 0:
+            self._player.value = self._player.end
+            self._go(None)
+
+    def _go(self, _event: Any) -> None:
+        """Show the flight and step of the player's frame."""
+        if self._training is None:
+            return
+        index, share = place_of(self._first, self._player.value)
+        flight = self._training.flights[index]
+        step = round(share * flight.steps)
+        self._show(flight, step)
+        self._text.object = _words(flight, step, self._training.settings.episodes)
+        self._going = True
+        self._episode.value = flight.episode
+        self._going = False
+
+    def _jump(self, event: Any) -> None:
+        """Go to the beginning of an episode's flight."""
+        if self._going:
+            return
+        episodes = self._episode.options
+        self._player.value = int(self._first[episodes.index(event.new)])
+
+
+def first_frames(steps: list[int]) -> NDArray[np.int64]:
+    """First frame of each flight, and the end of the last, (n + 1,).
+
+    Parameters
+    ----------
+    steps : list of int
+        Of each flight; it has a frame a step and one for its start, but at most `FRAMES`.
+    """
+    frames = np.minimum(np.array(steps, dtype=np.int64) + 1, FRAMES)
+    return np.concatenate(([0], np.cumsum(frames)))
+
+
+def place_of(first: NDArray[np.int64], frame: int) -> tuple[int, float]:
+    """Which flight a frame belongs to, and which share of it is flown by then."""
+    index = int(np.searchsorted(first, frame, side="right")) - 1
+    index = min(max(index, 0), first.size - 2)
+    last = int(first[index + 1] - first[index]) - 1
+    return index, (frame - int(first[index])) / last if last else 1.0
+
+
+def _words(flight: Flight, step: int, episodes: int) -> str:
+    end = "finds the source" if flight.reached else "is cut"
+    return (
+        f"Episode <b>{flight.episode}</b> of {episodes}: step {step} of {flight.steps}, "
+        f'<span class="quiet">which {end}</span>'
+    )

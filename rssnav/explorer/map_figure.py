@@ -1,0 +1,363 @@
+"""The map on the page: RSS in colour, walls, source and start to drag, paths, a flight."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from bokeh.events import Pan, PanEnd, PanStart, Tap
+from bokeh.models import (
+    ColorBar,
+    ColumnDataSource,
+    CustomJSHover,
+    DataRange1d,
+    HoverTool,
+    Image,
+    LinearColorMapper,
+    PanTool,
+    PointDrawTool,
+    ResetTool,
+    WheelZoomTool,
+)
+from bokeh.palettes import Viridis256
+from bokeh.plotting import figure
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
+from numpy.typing import NDArray
+from shapely import get_coordinates
+
+from floorplans import FloorPlan
+from floorplans.plan_legend import SOURCE, START
+from raytrace import RadioMap
+from rssnav.figures import AGENT_COLOURS, INK
+from rssnav.map_picture import FREE_WALL, NO_PATH
+
+FONT = "Inter, system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
+FLOOR = "#fbfaf7"
+PATH_COLOURS = "YlOrRd"
+PATH_RANGE_DB = 30.0
+"""Paths weaker than the strongest by this much have the lightest colour."""
+
+FADED, PLAIN = 0.35, 1.0
+TRAIL = 120
+"""Latest steps of a flight that are drawn strongly."""
+
+_DBM = CustomJSHover(code="return isFinite(value) ? value.toFixed(1) + ' dBm' : 'no path'")
+_NS = CustomJSHover(code="return isFinite(value) ? (1e9 * value).toFixed(1) + ' ns' : 'no path'")
+MARKS = ("source", "start")
+MARK_REACH = 0.03
+"""How near to a mark a drag must begin, as a share of the plan's longer side."""
+
+_EMPTY_LINES: dict[str, list[Any]] = {"xs": [], "ys": []}
+_EMPTY_POINTS: dict[str, list[float]] = {"x": [], "y": []}
+
+
+class MapFigure:
+    """A Bokeh figure of one plan.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+    height_m : float
+        Of the receivers above the floor; walls that are solid there are dark [m].
+    on_move : callable
+        Called with which mark, "source" or "start", and where it was dropped, x and y [m].
+    on_drag : callable
+        Called likewise while a mark is on the move.
+    on_tap : callable
+        Called with x and y [m] of a tap.
+
+    Attributes
+    ----------
+    model : bokeh.plotting.figure
+    """
+
+    def __init__(
+        self,
+        plan: FloorPlan,
+        height_m: float,
+        *,
+        on_move: Callable[[str, float, float], None],
+        on_drag: Callable[[str, float, float], None],
+        on_tap: Callable[[float, float], None],
+    ) -> None:
+        self._on_move, self._on_drag = on_move, on_drag
+        self._plan = plan
+        self._dragged: str | None = None
+        self.model = _empty_figure()
+        self._draw_floor(plan)
+        self._mapper = LinearColorMapper(
+            palette=Viridis256, low=-1.0, high=0.0, low_color="#00000000"
+        )
+        self._image = ColumnDataSource({name: [] for name in ("rss", "x", "y", "dw", "dh")})
+        self._dark = ColumnDataSource(dict(_EMPTY_POINTS))
+        self._draw_map()
+        self._draw_walls(plan, height_m)
+        self._cell = ColumnDataSource(dict(_EMPTY_POINTS))
+        self._paths = ColumnDataSource({**_EMPTY_LINES, "colour": []})
+        self._flown: NDArray[np.float64] = np.empty((0, 2))
+        self._flight = ColumnDataSource(dict(_EMPTY_POINTS))
+        self._trail = ColumnDataSource(dict(_EMPTY_POINTS))
+        self._uav = ColumnDataSource(dict(_EMPTY_POINTS))
+        self._draw_overlays()
+        self._marks = ColumnDataSource(_mark_columns(plan))
+        self._draw_marks()
+        self._on_tap = on_tap
+        self.model.on_event(Tap, self._tapped)
+        self._follow_drags()
+
+    def show_map(self, radio_map: RadioMap) -> None:
+        """Show a map's RSS, and what else it carries under the pointer."""
+        grid, half = radio_map.grid, 0.5 * radio_map.grid.cell_size_m
+        lit = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
+        if lit.size:
+            self._mapper.update(low=float(lit.min()), high=float(lit.max()) + 1e-9)
+        self._image.data = {
+            **{name: [values] for name, values in _layers(radio_map).items()},
+            "x": [grid.x[0] - half],
+            "y": [grid.y[0] - half],
+            "dw": [grid.x[-1] - grid.x[0] + 2 * half],
+            "dh": [grid.y[-1] - grid.y[0] + 2 * half],
+        }
+        self._hover.tooltips = _tooltips(radio_map)
+        dark = grid.points()[~np.isfinite(radio_map.rss_dbm).ravel()]
+        self._dark_cells.glyph.update(width=grid.cell_size_m, height=grid.cell_size_m)
+        self._dark.data = {"x": dark[:, 0], "y": dark[:, 1]}
+
+    def show_marks(self, plan: FloorPlan) -> None:
+        """Put the marks where source and start are."""
+        self._plan = plan
+        self._marks.data = _mark_columns(plan)
+
+    def show_cell(self, centre: tuple[float, float] | None, side_m: float) -> None:
+        """Frame a cell (x, y) [m], or none."""
+        self._frame.glyph.update(width=side_m, height=side_m)
+        self._cell.data = _points(np.array([centre]) if centre else np.empty((0, 2)))
+
+    def show_paths(
+        self, vertices: list[NDArray[np.float64]], power_dbm: NDArray[np.float64]
+    ) -> None:
+        """Draw paths, strongest first, coloured by power, over the faded map.
+
+        Parameters
+        ----------
+        vertices : list of (n_i, 2 or 3) float64
+            Of each path [m].
+        power_dbm : (n,) float64
+            Of each path [dBm].
+        """
+        colours = path_colours(power_dbm)
+        self._paths.data = {
+            "xs": [line[:, 0] for line in vertices[::-1]],
+            "ys": [line[:, 1] for line in vertices[::-1]],
+            "colour": colours[::-1],
+        }
+        self._picture.glyph.update(global_alpha=FADED if vertices else PLAIN)
+
+    def show_flight(self, position: NDArray[np.float64], step: int, agent: str) -> None:
+        """Draw a flight in its agent's colour: the whole way lightly, trail and UAV over it.
+
+        Parameters
+        ----------
+        position : (n + 1, 2) float64
+            Where it leads [m].
+        step : int
+            Where the UAV is, 0 to n.
+        agent : str
+            "rss" or "location".
+        """
+        for line in self._flight_lines:
+            line.glyph.update(line_color=AGENT_COLOURS[agent])
+        self._body.glyph.update(fill_color=AGENT_COLOURS[agent])
+        if position is not self._flown:
+            self._flown = position
+            self._flight.data = _points(position)
+        self._trail.data = _points(position[max(0, step - TRAIL) : step + 1])
+        self._uav.data = _points(position[step : step + 1])
+
+    def hide_flight(self) -> None:
+        """Take the flight from the map."""
+        self._flown = np.empty((0, 2))
+        for source in (self._flight, self._trail, self._uav):
+            source.data = _points(self._flown)
+
+    def _draw_floor(self, plan: FloorPlan) -> None:
+        rings = [get_coordinates(r) for r in (plan.outline.exterior, *plan.outline.interiors)]
+        floor = self.model.multi_polygons(
+            xs=[[[ring[:, 0].tolist() for ring in rings]]],
+            ys=[[[ring[:, 1].tolist() for ring in rings]]],
+            fill_color=FLOOR,
+            line_color=None,
+        )
+        for axis in (self.model.x_range, self.model.y_range):
+            axis.update(renderers=[floor])
+        x_min, y_min, x_max, y_max = plan.bounds
+        self.model.xaxis.bounds, self.model.yaxis.bounds = (x_min, x_max), (y_min, y_max)
+
+    def _draw_map(self) -> None:
+        glyph = Image(image="rss", x="x", y="y", dw="dw", dh="dh", color_mapper=self._mapper)
+        self._picture = self.model.add_glyph(self._image, glyph)
+        self._dark_cells = self.model.rect(
+            "x", "y", 1.0, 1.0, source=self._dark, fill_color=NO_PATH, line_color=None,
+            hatch_pattern="cross", hatch_color="#b5b5b5", hatch_scale=7, hatch_weight=0.5,
+        )  # fmt: skip
+        self._hover = HoverTool(
+            renderers=[self._picture],
+            tooltips=[],
+            formatters={"@rss": _DBM, "@delay_spread_s": _NS},
+            visible=False,
+        )
+        self.model.add_tools(self._hover)
+        bar = ColorBar(
+            color_mapper=self._mapper, title="RSS [dBm]", height=10, padding=4,
+            title_text_font=FONT, title_text_font_style="normal", title_text_font_size="12px",
+            major_label_text_font=FONT, major_label_text_font_size="11px", bar_line_color=None,
+            major_tick_line_color=None, background_fill_color=None,
+        )  # fmt: skip
+        self.model.add_layout(bar, "below")
+
+    def _draw_walls(self, plan: FloorPlan, height_m: float) -> None:
+        whole = np.array([(wall.start, wall.end) for wall in plan.walls])
+        for lines, colour, width in (
+            (whole, FREE_WALL, 1.5),
+            (plan.solid_segments(height_m), INK, 2.4),
+        ):
+            xs, ys = ([*lines[:, :, axis]] for axis in (0, 1))
+            self.model.multi_line(xs, ys, line_color=colour, line_width=width, line_cap="square")
+
+    def _draw_overlays(self) -> None:
+        self._frame = self.model.rect(
+            "x", "y", 1.0, 1.0, source=self._cell, fill_color=None, line_color=SOURCE, line_width=2
+        )
+        self.model.multi_line("xs", "ys", source=self._paths, line_color="white", line_width=3.6)
+        self.model.multi_line("xs", "ys", source=self._paths, line_color="colour", line_width=1.8)
+        self.model.line("x", "y", source=self._trail, line_color="white", line_width=5)
+        self._flight_lines = [
+            self.model.line("x", "y", source=self._flight, line_width=1.2, line_alpha=0.5),
+            self.model.line("x", "y", source=self._trail, line_width=2.8, line_join="round"),
+        ]
+        self._body = self.model.scatter(
+            "x", "y", source=self._uav, size=15, marker="diamond", line_color="white", line_width=2
+        )
+
+    def _draw_marks(self) -> None:
+        marks = self.model.scatter(
+            "x", "y", source=self._marks, marker="marker", size="size", fill_color="colour",
+            line_color="white", line_width=2,
+        )  # fmt: skip
+        tool = PointDrawTool(
+            renderers=[marks],  # pyright: ignore[reportArgumentType]
+            add=False,
+            num_objects=len(MARKS),
+            description="Drag source and start",
+        )
+        self.model.add_tools(tool)
+        self.model.toolbar.active_drag = tool
+        self._marks.on_change("data", self._moved)
+
+    def _tapped(self, event: Any) -> None:
+        self._on_tap(event.x, event.y)
+
+    def _moved(self, _name: str, _old: object, new: dict[str, Any]) -> None:
+        """Tell which mark was dropped somewhere else; bring back one that was deleted."""
+        if len(new["x"]) != len(MARKS):
+            self._marks.data = _mark_columns(self._plan)
+            return
+        for which, x, y, before in zip(MARKS, new["x"], new["y"], _places(self._plan), strict=True):
+            if (x, y) != before:
+                self._on_move(which, float(x), float(y))
+
+    def _follow_drags(self) -> None:
+        """Tell where a mark is while it is on the move."""
+
+        def begin(event: Any) -> None:
+            self._dragged = self._mark_at(event.x, event.y)
+
+        def go_on(event: Any) -> None:
+            if self._dragged is not None:
+                self._on_drag(self._dragged, event.x, event.y)
+
+        def end(_event: Any) -> None:
+            self._dragged = None
+
+        self.model.on_event(PanStart, begin)
+        self.model.on_event(Pan, go_on)
+        self.model.on_event(PanEnd, end)
+
+    def _mark_at(self, x: float, y: float) -> str | None:
+        """Which mark is under a point [m]."""
+        x_min, y_min, x_max, y_max = self._plan.bounds
+        distance_m = np.hypot(*(np.array(_places(self._plan)) - (x, y)).T)
+        nearest = int(np.argmin(distance_m))
+        reach_m = MARK_REACH * max(x_max - x_min, y_max - y_min)
+        return MARKS[nearest] if distance_m[nearest] < reach_m else None
+
+
+def path_colours(power_dbm: NDArray[np.float64]) -> list[str]:
+    """Colour of each path (n,), dark for the strongest, light 30 dB below it."""
+    if not power_dbm.size:
+        return []
+    weakness = np.clip((power_dbm.max() - power_dbm) / PATH_RANGE_DB, 0.0, 1.0)
+    return [to_hex(colour) for colour in colormaps[PATH_COLOURS](0.95 - 0.7 * weakness)]
+
+
+def _empty_figure() -> figure:
+    """A figure true to scale, with a quiet frame and without the library's logo."""
+    model = figure(
+        sizing_mode="stretch_both",
+        min_height=280,
+        match_aspect=True,
+        tools=[PanTool(), WheelZoomTool(), ResetTool()],
+        toolbar_location="right",
+        x_range=DataRange1d(range_padding=0.02),
+        y_range=DataRange1d(range_padding=0.02),
+        outline_line_color=None,
+        background_fill_color=None,
+        border_fill_color=None,
+    )
+    model.toolbar.logo = None
+    model.grid.visible = False
+    for axis, name in ((model.xaxis, "x [m]"), (model.yaxis, "y [m]")):
+        axis.update(
+            axis_label=name, axis_line_color=None, minor_tick_line_color=None,
+            major_tick_line_color="#b0aca2", axis_label_text_font=FONT, major_label_text_font=FONT,
+            axis_label_text_font_style="normal", axis_label_text_color=INK,
+        )  # fmt: skip
+    return model
+
+
+def _layers(radio_map: RadioMap) -> dict[str, NDArray[Any]]:
+    """What a map tells of each cell, (n_y, n_x) each, by the name it has under the pointer."""
+    layers = {"rss": radio_map.rss_dbm, "path_count": radio_map.path_count}
+    spread_s = getattr(radio_map, "delay_spread_s", None)
+    return layers if spread_s is None else {**layers, "delay_spread_s": spread_s}
+
+
+def _tooltips(radio_map: RadioMap) -> list[tuple[str, str]]:
+    """Lines of the box under the pointer."""
+    rows = [("RSS", "@rss{custom}"), ("paths", "@path_count{0,0}")]
+    if "delay_spread_s" in _layers(radio_map):
+        rows.append(("delay spread", "@delay_spread_s{custom}"))
+    return [*rows, ("at", "($x{0.0}, $y{0.0}) m")]
+
+
+def _places(plan: FloorPlan) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Where source and start are (x, y) [m]."""
+    return plan.source[:2], plan.start
+
+
+def _mark_columns(plan: FloorPlan) -> dict[str, Any]:
+    """Columns of the marks of source and start."""
+    x, y = zip(*_places(plan), strict=True)
+    return {
+        "x": list(x),
+        "y": list(y),
+        "marker": ["star", "circle"],
+        "size": [26, 17],
+        "colour": [SOURCE, START],
+    }
+
+
+def _points(position: NDArray[np.float64]) -> dict[str, Any]:
+    return {"x": position[:, 0], "y": position[:, 1]}

@@ -1,0 +1,226 @@
+"""The page of one tab: map, panels, player, and the look ten times a second for what is new."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import panel as pn
+
+from rssnav.cli.kernel_cache import tracer_cache
+from rssnav.explorer.cell_panel import CellPanel, page_3d, strongest
+from rssnav.explorer.downloads import Downloads
+from rssnav.explorer.flight_player import FlightPlayer
+from rssnav.explorer.map_figure import MapFigure
+from rssnav.explorer.plan_panel import PlanPanel
+from rssnav.explorer.session import Session
+from rssnav.explorer.styles import (
+    FRAME,
+    PAGE,
+    PAGE_CSS,
+    WIDGETS,
+    map_words,
+    plan_words,
+    problem,
+    progress_bar,
+)
+from rssnav.explorer.training import Flight
+from rssnav.explorer.training_panel import TrainingPanel
+
+LOOK_MS = 100
+CELL_TAB = 1
+PLAN_VIEW, SPACE_VIEW = "Plan", "3D"
+
+
+class News:
+    """Tells whether something is other than it was at the last look."""
+
+    def __init__(self) -> None:
+        self._seen: dict[str, tuple[object, ...]] = {}
+
+    def of(self, name: str, *values: object) -> bool:
+        """Whether any of the values differs from those given under the name before."""
+        before = self._seen.get(name)
+        self._seen[name] = values
+        if before is None or len(before) != len(values):
+            return True
+        return any(a is not b and a != b for a, b in zip(before, values, strict=True))
+
+
+class Page:
+    """Puts a session on a page and keeps it up to date.
+
+    Parameters
+    ----------
+    session : Session
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._news = News()
+        self._compiles = not tracer_cache().n_compiled
+        self._plan_panel = PlanPanel(session)
+        self._cell_panel = CellPanel(session)
+        self._training_panel = TrainingPanel(session)
+        self._downloads = Downloads(session)
+        self._player = FlightPlayer(self._show_flight)
+        self._views = pn.widgets.RadioButtonGroup(
+            options=[PLAN_VIEW, SPACE_VIEW], value=PLAN_VIEW, stylesheets=WIDGETS, width=130
+        )
+        self._views.param.watch(self._switch_view, "value")
+        self._name, self._status = (
+            pn.pane.HTML("", stylesheets=WIDGETS, sizing_mode="stretch_width") for _ in range(2)
+        )
+        self._canvas = pn.pane.Bokeh(sizing_mode="stretch_both")
+        self._space = pn.pane.HTML(
+            "", sizing_mode="stretch_both", visible=False, stylesheets=[FRAME]
+        )
+        self._tabs = pn.Tabs(
+            ("Plan", self._plan_panel.view),
+            ("Cell", self._cell_panel.view),
+            ("Training", self._training_panel.view),
+            ("Download", self._downloads.view),
+            stylesheets=WIDGETS,
+            sizing_mode="stretch_width",
+        )
+        self.refresh()
+
+    def template(self) -> pn.Template:
+        """Lay the parts out in the page's HTML."""
+        template = pn.Template(
+            PAGE,
+            items={
+                "bar": pn.Row(self._name, self._views, sizing_mode="stretch_width"),
+                "view": pn.Column(self._canvas, self._space, sizing_mode="stretch_both"),
+                "status": self._status,
+                "player": self._player.view,
+                "tools": self._tabs,
+            },
+        )
+        template.add_variable("page_css", PAGE_CSS)
+        return template
+
+    def refresh(self) -> None:
+        """Show what is new in the session."""
+        session = self._session
+        session.take_upload()
+        if self._news.of("building", session.plan.walls, session.settings.height_m):
+            self._new_figure()
+        if self._news.of("plan", session.plan, session.settings):
+            self._figure.show_marks(session.plan)
+            self._plan_panel.show()
+            self._name.object = plan_words(session.plan)
+        self._show_map()
+        self._show_paths()
+        self._show_training()
+        self._status.object = self._status_words()
+
+    def _new_figure(self) -> None:
+        """Draw the plan from the beginning, as it is another or is cut at another height."""
+        session = self._session
+        self._news = News()
+        self._news.of("building", session.plan.walls, session.settings.height_m)
+        self._figure = MapFigure(
+            session.plan,
+            session.settings.height_m,
+            on_move=self._move,
+            on_drag=self._drag,
+            on_tap=self._tap,
+        )
+        self._canvas.object = self._figure.model
+
+    def _move(self, which: str, x: float, y: float) -> None:
+        """Move a mark to where it was dropped, or back to where it was."""
+        session = self._session
+        (session.move_source if which == "source" else session.move_start)(x, y)
+        self._figure.show_marks(session.plan)
+
+    def _drag(self, which: str, x: float, y: float) -> None:
+        if which == "source":
+            self._session.preview_source(x, y)
+
+    def _tap(self, x: float, y: float) -> None:
+        self._session.choose_cell(x, y)
+        if self._session.cell is not None:
+            self._tabs.active = CELL_TAB
+
+    def _show_map(self) -> None:
+        """Show a new map; the last one stays until then."""
+        latest, complete = self._session.maps.latest, self._session.complete_map is not None
+        if latest is not None and self._news.of("map", latest):
+            self._figure.show_map(latest.radio_map)
+        if self._news.of("complete", complete, self._session.plan):
+            self._downloads.show()
+            if complete and self._news.of("goal", latest):
+                self._training_panel.suggest_goal()
+
+    def _show_paths(self) -> None:
+        session = self._session
+        found, finder = session.paths.latest, session.paths
+        if not self._news.of("paths", session.cell, found, finder.busy, finder.problem):
+            return
+        centre = None
+        if session.cell is not None:
+            i_y, i_x = session.cell
+            centre = (float(session.grid.x[i_x]), float(session.grid.y[i_y]))
+        self._figure.show_cell(centre, session.settings.cell_size_m)
+        lines = [] if found is None else strongest(found)
+        power_dbm = np.empty(0) if found is None else found.power_dbm[: len(lines)]
+        self._figure.show_paths(lines, power_dbm)
+        self._cell_panel.show()
+        self._show_space()
+
+    def _show_training(self) -> None:
+        training, complete = self._session.training, self._session.complete_map is not None
+        how_far = (0, False) if training is None else (training.steps.size, training.running)
+        if self._news.of("training", training, complete, *how_far):
+            self._training_panel.show()
+            self._player.follow(training)
+            if training is None:
+                self._figure.hide_flight()
+
+    def _show_flight(self, flight: Flight, step: int) -> None:
+        training = self._session.training
+        if training is not None:
+            self._figure.show_flight(flight.position, step, training.settings.agent)
+
+    def _switch_view(self, event: Any) -> None:
+        """Show the plan or the building in three dimensions."""
+        self._space.visible = event.new == SPACE_VIEW
+        self._canvas.visible = event.new == PLAN_VIEW
+        self._show_space()
+
+    def _show_space(self) -> None:
+        """Make the view in three dimensions, where it is looked at."""
+        session = self._session
+        if not self._space.visible:
+            return
+        if self._news.of("space", session.plan, session.paths.latest):
+            self._space.object = page_3d(session.plan, session.paths.latest)
+
+    def _status_words(self) -> str:
+        """HTML of how far the map is, or what is wrong."""
+        session, maps = self._session, self._session.maps
+        trouble = session.problem or maps.problem
+        if trouble:
+            return problem(trouble)
+        if maps.progress is not None:
+            if self._compiles and maps.latest is None:
+                return progress_bar(None, "Compiling the tracer, on first use only")
+            first = maps.latest is None or not maps.progress
+            what = "Tracing the reflections" if first else "Adding the diffraction"
+            return progress_bar(maps.progress, what)
+        return "" if maps.latest is None else map_words(maps.latest)
+
+
+def page_of(session: Session, every: Callable[[Callable[[], None], int], object]) -> pn.Template:
+    """Make a session's page.
+
+    Parameters
+    ----------
+    session : Session
+    every : callable
+        Called with a function and a period [ms], as `panel.state.add_periodic_callback` is.
+    """
+    page = Page(session)
+    every(page.refresh, LOOK_MS)
+    return page.template()

@@ -1,0 +1,132 @@
+"""Choose or upload a plan, and what its map is made with."""
+
+from dataclasses import replace
+from typing import Any
+
+import panel as pn
+
+import floorplans
+from floorplans import FloorPlan
+from rssnav.explorer.session import Session
+from rssnav.explorer.styles import WIDGETS
+from rssnav.explorer.tracing import MapSettings
+from rssnav.explorer.uploads import ACCEPTED
+
+GIGA = 1e9
+
+
+class PlanDropper(pn.widgets.FileDropper):
+    """A place to drop one file that fits into one message; what comes in pieces is not kept."""
+
+    def _process_event(self, event: Any) -> None:
+        if event.event_name == "delete_event" or event.data["total_chunks"] == 1:
+            super()._process_event(event)
+
+
+class PlanPanel:
+    """Widgets for the plan and the settings of its map.
+
+    Parameters
+    ----------
+    session : Session
+
+    Attributes
+    ----------
+    view : panel.Column
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._showing = False
+        self._plan = pn.widgets.Select(
+            label="Plan", options=self._names(), stylesheets=WIDGETS, sizing_mode="stretch_width"
+        )
+        self._upload = PlanDropper(
+            label=f"Or your own ({', '.join(ACCEPTED)})",
+            multiple=False,
+            max_file_size=f"{session.limits.upload_bytes // 1000}KB",
+            chunk_size=2 * session.limits.upload_bytes,
+            previews=[],
+            stylesheets=WIDGETS,
+            sizing_mode="stretch_width",
+        )
+        self._make_settings()
+        self._plan.param.watch(self._choose, "value")
+        self._upload.param.watch(self._take, "value")
+        self.view = pn.Column(
+            self._plan,
+            self._upload,
+            pn.pane.HTML("<h2>Map</h2>", stylesheets=WIDGETS, margin=(0, 10)),
+            pn.FlexBox(*self._inputs.values(), gap="0px 8px"),
+            pn.pane.HTML(
+                '<p class="quiet">Drag the star (source) and the dot (start) on the floor. Hover '
+                "for a cell's RSS, click it for its paths.</p>",
+                stylesheets=WIDGETS,
+            ),
+            sizing_mode="stretch_width",
+        )
+        self.show()
+
+    def show(self) -> None:
+        """Show the session's plan and settings."""
+        self._showing = True
+        plan = self._session.plan
+        self._plan.options = self._names()
+        self._plan.value = plan.name
+        for name, value in _values(plan, self._session.settings).items():
+            self._inputs[name].value = value
+        self._showing = False
+
+    def _names(self) -> list[str]:
+        """Built-in plans, and the plan that is open."""
+        return list(dict.fromkeys((*floorplans.builtin_names(), self._session.plan.name)))
+
+    def _make_settings(self) -> None:
+        options: dict[str, Any] = {"stylesheets": WIDGETS, "width": 165, "margin": (3, 5)}
+        number = pn.widgets.FloatInput
+        self._inputs: dict[str, Any] = {
+            "cell_size_m": number(label="Cell [m]", start=0.05, step=0.25, **options),
+            "height_m": number(label="UAV's height [m]", start=0.01, step=0.1, **options),
+            "source_z_m": number(label="Source's height [m]", start=0.01, step=0.1, **options),
+            "max_reflections": pn.widgets.IntInput(
+                label="Reflections", start=0, end=8, step=1, **options
+            ),
+            "power_dbm": number(label="Power [dBm]", start=-50.0, end=60.0, step=1.0, **options),
+            "frequency_ghz": number(label="Frequency [GHz]", start=1.0, end=100.0, **options),
+        }
+        for widget in self._inputs.values():
+            widget.param.watch(self._change, "value")
+
+    def _choose(self, event: Any) -> None:
+        if not self._showing and event.new in floorplans.builtin_names():
+            self._session.open_builtin(event.new)
+
+    def _take(self, event: Any) -> None:
+        """Hand an uploaded file to the session, and empty the dropper."""
+        for name, content in event.new.items():
+            data = content.encode() if isinstance(content, str) else content
+            self._session.upload(name, data)
+
+    def _change(self, _event: Any) -> None:
+        values = {name: widget.value for name, widget in self._inputs.items()}
+        if self._showing or None in values.values():
+            return
+        source_z_m, frequency_ghz = values.pop("source_z_m"), values.pop("frequency_ghz")
+        session = self._session
+        if source_z_m != session.plan.source[2]:
+            session.move_source(*session.plan.source[:2], source_z_m)
+        session.change_settings(
+            replace(session.settings, frequency_hz=frequency_ghz * GIGA, **values)
+        )
+
+
+def _values(plan: FloorPlan, settings: MapSettings) -> dict[str, float]:
+    """What the inputs show, by their names."""
+    return {
+        "cell_size_m": settings.cell_size_m,
+        "height_m": settings.height_m,
+        "source_z_m": plan.source[2],
+        "max_reflections": settings.max_reflections,
+        "power_dbm": settings.power_dbm,
+        "frequency_ghz": settings.frequency_hz / GIGA,
+    }

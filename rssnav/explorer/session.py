@@ -1,0 +1,239 @@
+"""What one tab of the explorer holds: a plan, its map, a cell's paths, a training."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+import floorplans
+from floorplans import FloorPlan, PlanError
+from raytrace import Grid, RadioMap
+from rssnav.explorer.background import NewestOnly, Ticket
+from rssnav.explorer.limits import Limits
+from rssnav.explorer.tracing import MapCache, MapSettings, MapTracer, PathFinder, TracedMap
+from rssnav.explorer.training import LiveTraining, TrainingSettings
+from rssnav.explorer.uploads import read_upload
+
+PLACE_DIGITS = 2
+"""A dragged source lands on whole centimetres."""
+
+Point = tuple[float, float]
+
+
+class Session:
+    """State of one tab; knows nothing of browsers.
+
+    Methods that change it are called from one thread only. What takes time runs on others and
+    shows in `maps`, `paths` and `training`, or comes back through `take_upload`.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        To begin with.
+    limits : Limits, optional
+    cache : MapCache, optional
+        Shared with other sessions.
+
+    Attributes
+    ----------
+    plan : FloorPlan
+        With source and start where they are now.
+    settings : MapSettings
+    maps : MapTracer
+    paths : PathFinder
+    training : LiveTraining or None
+    cell : (int, int) or None
+        Indices (i_y, i_x) of the chosen cell.
+    problem : str
+        Why the latest change was refused; empty if it was not.
+    """
+
+    def __init__(
+        self, plan: FloorPlan, limits: Limits | None = None, cache: MapCache | None = None
+    ) -> None:
+        self.limits = limits or Limits()
+        self.settings = MapSettings()
+        self.maps = MapTracer(self.limits, cache or MapCache())
+        self.paths = PathFinder()
+        self.training: LiveTraining | None = None
+        self.cell: tuple[int, int] | None = None
+        self.problem = ""
+        self._reader = NewestOnly("upload")
+        self._uploaded: FloorPlan | str | None = None
+        self.open_plan(plan)
+
+    def close(self) -> None:
+        """Stop everything that runs for this tab."""
+        self.stop_training()
+        for part in (self.maps, self.paths, self._reader):
+            part.close()
+
+    @property
+    def grid(self) -> Grid:
+        """Cells of the plan; raises `PlanError` where the settings do not fit it."""
+        return self.settings.grid(self.plan)
+
+    def open_plan(self, plan: FloorPlan) -> None:
+        """Take another plan, and trace its map.
+
+        Raises
+        ------
+        PlanError
+            For a plan that is too large; the one before stays.
+        """
+        self.limits.check_plan(plan)
+        height_m = self.settings.height_m
+        if not height_m < plan.height_m:
+            height_m = round(plan.height_m / 2, PLACE_DIGITS)
+        settings = replace(self.settings, height_m=height_m)
+        self.limits.check_grid(plan, settings.grid(plan))
+        self._drop_training()
+        self.maps.forget()
+        self.paths.forget()
+        self.cell, self.problem = None, ""
+        self.plan, self.settings = plan, settings
+        self._snap_start()
+        self.maps.request(self.plan, self.settings)
+
+    def open_builtin(self, name: str) -> None:
+        """Take one of the plans that come with the project."""
+        self.open_plan(floorplans.load(name))
+
+    def upload(self, name: str, content: bytes) -> None:
+        """Begin to read an uploaded file; `take_upload` gives what became of it."""
+        self._uploaded = None
+        self._reader.submit(partial(self._read, name, content))
+
+    def take_upload(self) -> bool:
+        """Open an upload that has been read; return whether there was one, refused or not."""
+        found, self._uploaded = self._uploaded, None
+        if isinstance(found, FloorPlan):
+            self._try(partial(self.open_plan, found))
+        elif found is not None:
+            self.problem = found
+        return found is not None
+
+    def _read(self, name: str, content: bytes, ticket: Ticket) -> None:
+        try:
+            found = read_upload(name, content, self.limits)
+        except PlanError as error:
+            found = str(error)
+        ticket.check()
+        self._uploaded = found
+
+    def preview_source(self, x: float, y: float) -> None:
+        """Show the reflections of a source on the move, as far as it can be there."""
+        self.maps.preview(self.plan, self.settings, (x, y, self.plan.source[2]))
+
+    def move_source(self, x: float, y: float, z: float | None = None) -> None:
+        """Put the source somewhere [m] and trace the map; where it cannot be, it stays."""
+        height_m = self.plan.source[2] if z is None else z
+        source = (round(x, PLACE_DIGITS), round(y, PLACE_DIGITS), height_m)
+        before = self.plan
+        self._try(lambda: self._replace_plan(replace(before, source=source)))
+        if self.plan.source != before.source:
+            self._drop_training()
+        self.maps.request(self.plan, self.settings)
+        self._find_paths()
+
+    def move_start(self, x: float, y: float) -> None:
+        """Put the start at the cell centre nearest to a point [m]; where it cannot be, it stays."""
+        before = self.plan
+        self._try(lambda: self._replace_plan(replace(before, start=_nearest(self.grid, x, y))))
+        if self.plan is not before:
+            self._drop_training()
+
+    def change_settings(self, settings: MapSettings) -> None:
+        """Trace the map with other settings; those that do not fit the plan are refused."""
+        if settings == self.settings:
+            return
+        self._try(partial(self._apply, settings))
+
+    def _apply(self, settings: MapSettings) -> None:
+        self.limits.check_grid(self.plan, settings.grid(self.plan))
+        self._drop_training()
+        self.paths.forget()
+        self.cell, self.settings = None, settings
+        self._snap_start()
+        self.maps.request(self.plan, settings)
+
+    def choose_cell(self, x: float, y: float) -> None:
+        """Choose the cell that holds a point [m] and trace its paths; none outside the building."""
+        grid = self.grid
+        i_x, i_y = (
+            int(np.floor((at - centres[0]) / grid.cell_size_m + 0.5))
+            for at, centres in ((x, grid.x), (y, grid.y))
+        )
+        inside = 0 <= i_x < len(grid.x) and 0 <= i_y < len(grid.y)
+        self.cell = (i_y, i_x) if inside else None
+        self._find_paths()
+
+    def _find_paths(self) -> None:
+        if self.cell is None:
+            self.paths.forget()
+            return
+        grid, (i_y, i_x) = self.grid, self.cell
+        receiver = (float(grid.x[i_x]), float(grid.y[i_y]), grid.height_m)
+        self.paths.request(self.plan, self.settings, receiver)
+
+    @property
+    def complete_map(self) -> TracedMap | None:
+        """The whole map of the plan as it is now, marked with it; None until it is traced."""
+        latest = self.maps.latest
+        if latest is None or not latest.complete or latest.settings != self.settings:
+            return None
+        if latest.plan.source != self.plan.source:
+            return None
+        marked = latest.radio_map.with_plan(floorplans.dumps(self.plan), self.plan.sha256)
+        return replace(latest, plan=self.plan, radio_map=marked)
+
+    def train(self, settings: TrainingSettings) -> None:
+        """Begin a training in the complete map, in place of the one before."""
+        traced = self.complete_map
+        if traced is None:
+            self.problem = "the map is not complete yet; train when it is"
+            return
+        self.stop_training()
+        self.problem = ""
+        self.training = LiveTraining(traced, settings)
+        self.training.start()
+
+    def stop_training(self) -> None:
+        """Stop the training; what it has learnt stays."""
+        if self.training is not None:
+            self.training.stop()
+
+    def _drop_training(self) -> None:
+        self.stop_training()
+        self.training = None
+
+    def _snap_start(self) -> None:
+        """Put the start on a cell centre, where the plan allows it."""
+        start = _nearest(self.grid, *self.plan.start)
+        if start != self.plan.start:
+            self._try(lambda: self._replace_plan(replace(self.plan, start=start)))
+
+    def _replace_plan(self, plan: FloorPlan) -> None:
+        self.plan = plan
+
+    def _try(self, change: Callable[[], None]) -> None:
+        """Change something, or say why it cannot be changed."""
+        try:
+            change()
+            self.problem = ""
+        except PlanError as error:
+            self.problem = str(error)
+
+
+def suggested_goal_dbm(radio_map: RadioMap, usual_dbm: float) -> float:
+    """Reading that a goal may ask for: the usual one, or what the strongest cells exceed [dBm]."""
+    lit = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
+    strongest = float(lit.max()) if lit.size else usual_dbm
+    return usual_dbm if strongest > usual_dbm else float(np.floor(strongest - 1.0))
+
+
+def _nearest(grid: Grid, x: float, y: float) -> Point:
+    """Cell centre nearest to a point [m]."""
+    i_x, i_y = int(np.argmin(np.abs(grid.x - x))), int(np.argmin(np.abs(grid.y - y)))
+    return float(grid.x[i_x]), float(grid.y[i_y])

@@ -1,0 +1,307 @@
+"""Radio maps and paths of a session, traced on threads of their own."""
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from threading import Lock
+
+import numpy as np
+
+from floorplans import FloorPlan, PlanError
+from raytrace import (
+    Grid,
+    Paths,
+    RadioMap,
+    Scene,
+    SceneError,
+    TraceConfig,
+    Transmitter,
+    compute_radio_map,
+    trace_paths,
+)
+from rssnav.explorer.background import NewestOnly, Ticket
+from rssnav.explorer.limits import Limits
+from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM, scene_of
+
+Position = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class MapSettings:
+    """What is chosen for a map beside its plan.
+
+    Attributes
+    ----------
+    cell_size_m, height_m : float
+        Side of a cell, and height of the receivers above the floor [m].
+    max_reflections : int
+        On a path.
+    power_dbm, frequency_hz : float
+        Of the source [dBm], [Hz].
+    """
+
+    cell_size_m: float = CELL_SIZE_M
+    height_m: float = HEIGHT_M
+    max_reflections: int = TraceConfig.max_reflections
+    power_dbm: float = POWER_DBM
+    frequency_hz: float = FREQUENCY_HZ
+
+    def grid(self, plan: FloorPlan) -> Grid:
+        """Cells over a plan; raise `PlanError` where they would not lie between its slabs."""
+        if not 0.0 < self.height_m < plan.height_m:
+            raise PlanError(
+                f"receivers {self.height_m:g} m above the floor: choose a height above 0 and below "
+                f"{plan.height_m:g} m, the ceiling's",
+                origin=plan.name,
+            )
+        return Grid.over(plan.bounds, self.cell_size_m, self.height_m)
+
+    def transmitter(self, plan: FloorPlan) -> Transmitter:
+        """A plan's source."""
+        return Transmitter(plan.source, self.power_dbm, self.frequency_hz)
+
+
+@dataclass(frozen=True, eq=False)
+class TracedMap:
+    """A map, and what it was traced for.
+
+    Attributes
+    ----------
+    plan : FloorPlan
+        Its source is the map's; the start may have moved since.
+    settings : MapSettings
+    radio_map : RadioMap
+    complete : bool
+        Whether the paths with a diffraction are in it.
+    """
+
+    plan: FloorPlan
+    settings: MapSettings
+    radio_map: RadioMap
+    complete: bool
+
+
+@dataclass(frozen=True, eq=False)
+class CellPaths:
+    """Every path to the centre of a cell.
+
+    Attributes
+    ----------
+    plan : FloorPlan
+    settings : MapSettings
+    receiver : (float, float, float)
+        Centre of the cell [m].
+    paths : Paths
+        Strongest first.
+    """
+
+    plan: FloorPlan
+    settings: MapSettings
+    receiver: Position
+    paths: Paths
+
+    @property
+    def power_dbm(self) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
+        """(n,) power of each path [dBm]."""
+        return self.settings.power_dbm + self.paths.gain_db
+
+    @property
+    def rss_dbm(self) -> float:
+        """Sum of the powers [dBm]; -inf without a path."""
+        total = float(np.sum(np.abs(self.paths.gain) ** 2))
+        return self.settings.power_dbm + 10.0 * float(np.log10(total)) if total > 0.0 else -np.inf
+
+    @property
+    def delay_spread_s(self) -> float:
+        """Spread of the delays, rms about their mean, weighted by power [s]; 0 without a path."""
+        power = np.abs(self.paths.gain) ** 2
+        total = float(power.sum())
+        if total == 0.0:
+            return 0.0
+        delay_s = self.paths.delay_s
+        mean_s = float(power @ delay_s) / total
+        return float(np.sqrt(power @ (delay_s - mean_s) ** 2 / total))
+
+
+class MapCache:
+    """The latest complete maps, shared by all sessions; nobody writes to one.
+
+    Parameters
+    ----------
+    size : int
+        Maps that are kept.
+    """
+
+    def __init__(self, size: int = 16) -> None:
+        self._size = size
+        self._lock = Lock()
+        self._maps: OrderedDict[tuple[str, MapSettings], TracedMap] = OrderedDict()
+
+    def get(self, plan: FloorPlan, settings: MapSettings) -> TracedMap | None:
+        """Return the map of a plan, if it is kept."""
+        with self._lock:
+            return self._maps.get((plan.sha256, settings))
+
+    def put(self, traced: TracedMap) -> None:
+        """Keep a map; the one kept longest makes room."""
+        with self._lock:
+            self._maps[traced.plan.sha256, traced.settings] = traced
+            while len(self._maps) > self._size:
+                self._maps.popitem(last=False)
+
+
+class MapTracer:
+    """Traces the newest map asked for: reflections at once, then everything.
+
+    Attributes
+    ----------
+    latest : TracedMap or None
+        Newest map; an older one stays until then.
+    progress : float or None
+        Share of the work that is done, None when there is none.
+    problem : str
+        Why the newest request failed; empty if it did not.
+    """
+
+    def __init__(self, limits: Limits, cache: MapCache) -> None:
+        self.latest: TracedMap | None = None
+        self.progress: float | None = None
+        self.problem = ""
+        self._limits = limits
+        self._cache = cache
+        self._thread = NewestOnly("map")
+        self._built: tuple[FloorPlan, Scene] | None = None
+
+    def request(self, plan: FloorPlan, settings: MapSettings) -> None:
+        """Trace a map in place of the one being traced."""
+        self.progress = 0.0
+        self._thread.submit(partial(self._trace, plan, settings))
+
+    def preview(self, plan: FloorPlan, settings: MapSettings, source: Position) -> None:
+        """Trace the reflections of a source on the move [m], where it can be there."""
+        self.progress = 0.0
+        self._thread.submit(partial(self._preview, plan, settings, source))
+
+    def forget(self) -> None:
+        """Drop the map, as it belongs to another plan."""
+        self._thread.cancel()
+        self.latest, self.progress, self.problem = None, None, ""
+
+    def close(self) -> None:
+        """End the thread."""
+        self._thread.close()
+
+    def _trace(self, plan: FloorPlan, settings: MapSettings, ticket: Ticket) -> None:
+        try:
+            kept = self._cache.get(plan, settings)
+            if kept is None:
+                self._finish(self._stage(plan, settings, False, ticket), ticket)
+                kept = self._stage(plan, settings, True, ticket)
+                self._cache.put(kept)
+            self._finish(kept, ticket)
+        except (PlanError, SceneError, ValueError, TimeoutError) as error:
+            ticket.check()
+            self.problem = str(error)
+        self.progress = None
+
+    def _preview(
+        self, plan: FloorPlan, settings: MapSettings, source: Position, ticket: Ticket
+    ) -> None:
+        try:
+            self._finish(self._stage(replace(plan, source=source), settings, False, ticket), ticket)
+        except (PlanError, SceneError, ValueError):
+            ticket.check()
+        self.progress = None
+
+    def _stage(
+        self, plan: FloorPlan, settings: MapSettings, complete: bool, ticket: Ticket
+    ) -> TracedMap:
+        """Trace one map."""
+        grid = settings.grid(plan)
+        self._limits.check_grid(plan, grid)
+        radio_map = compute_radio_map(
+            self._scene(plan),
+            settings.transmitter(plan),
+            grid,
+            TraceConfig(settings.max_reflections, int(complete)),
+            progress=self._watch(complete, ticket),
+        )
+        return TracedMap(plan, settings, radio_map, complete)
+
+    def _watch(self, complete: bool, ticket: Ticket) -> Callable[[int, int], None]:
+        """Follow a map's tracing: stop it when it is no longer wanted or takes too long."""
+        ends_s = time.monotonic() + self._limits.map_s
+
+        def progress(done: int, total: int) -> None:
+            ticket.check()
+            if time.monotonic() > ends_s:
+                raise TimeoutError(
+                    f"the map takes longer than {self._limits.map_s:g} s: use larger cells or "
+                    "fewer reflections"
+                )
+            self.progress = done / total if complete else 0.0
+
+        return progress
+
+    def _finish(self, traced: TracedMap, ticket: Ticket) -> None:
+        ticket.check()
+        self.latest, self.problem = traced, ""
+
+    def _scene(self, plan: FloorPlan) -> Scene:
+        """Scene of a plan; moving source or start leaves the walls, and so the scene, as it is."""
+        if self._built is None or self._built[0].walls is not plan.walls:
+            self._built = (plan, scene_of(plan))
+        return self._built[1]
+
+
+class PathFinder:
+    """Traces the paths to the newest cell asked for.
+
+    Attributes
+    ----------
+    latest : CellPaths or None
+        Paths to the newest cell that is done.
+    busy : bool
+        Whether a cell is being traced.
+    problem : str
+        Why the newest request failed; empty if it did not.
+    """
+
+    def __init__(self) -> None:
+        self.latest: CellPaths | None = None
+        self.busy = False
+        self.problem = ""
+        self._thread = NewestOnly("paths")
+
+    def request(self, plan: FloorPlan, settings: MapSettings, receiver: Position) -> None:
+        """Trace the paths to a receiver [m] in place of the one before."""
+        self.busy = True
+        self._thread.submit(partial(self._trace, plan, settings, receiver))
+
+    def forget(self) -> None:
+        """Drop the paths."""
+        self._thread.cancel()
+        self.latest, self.busy, self.problem = None, False, ""
+
+    def close(self) -> None:
+        """End the thread."""
+        self._thread.close()
+
+    def _trace(
+        self, plan: FloorPlan, settings: MapSettings, receiver: Position, ticket: Ticket
+    ) -> None:
+        found, problem = None, ""
+        try:
+            paths = trace_paths(
+                scene_of(plan),
+                settings.transmitter(plan),
+                np.array([receiver]),
+                TraceConfig(settings.max_reflections),
+            )
+            found = CellPaths(plan, settings, receiver, paths)
+        except (SceneError, ValueError) as error:
+            problem = str(error)
+        ticket.check()
+        self.latest, self.problem, self.busy = found, problem, False

@@ -1,0 +1,206 @@
+"""One realisation of Q-learning to watch while it learns."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, field
+from threading import Event, Thread
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.agents import Agent, LocationAgent, QLearning, RssAgent
+from rssnav.explorer.tracing import TracedMap
+from rssnav.kernels import common
+from rssnav.learners import Learner, LearningProblem
+from rssnav.planning import shortest_path
+from rssnav.states import ExactStates, ToleranceStates
+from rssnav.training import generator_states
+from rssnav.world import GridWorld, WorldError
+
+LOGGER = logging.getLogger(__name__)
+
+KEPT_FLIGHTS = 200
+MAX_EPISODES = 20_000
+_CHUNK_EPISODES = 64
+
+
+@dataclass(frozen=True)
+class TrainingSettings:
+    """What is chosen for a training.
+
+    Attributes
+    ----------
+    agent : {"rss", "location"}
+    speed : int
+        Cells flown in a step along an axis.
+    episodes : int
+    seed : int
+    goal_rss_dbm : float
+        The RSS agent has found the source above this reading [dBm].
+    goal_distance_m : float
+        The location agent has found it when nearer than this [m].
+    tolerance_db : float
+        A reading this near to a known state is that state [dB]; 0 makes every value a state.
+    learning : QLearning
+    """
+
+    agent: Literal["rss", "location"] = "rss"
+    speed: int = 1
+    episodes: int = 1000
+    seed: int = 0
+    goal_rss_dbm: float = RssAgent.terminal_dbm
+    goal_distance_m: float = LocationAgent.terminal_distance_m
+    tolerance_db: float = 0.0
+    learning: QLearning = field(default_factory=QLearning)
+
+    def __post_init__(self) -> None:
+        """Check the number of episodes; the rest is checked by what it is for."""
+        if not 1 <= self.episodes <= MAX_EPISODES:
+            raise ValueError(f"episodes: {self.episodes} must be 1 to {MAX_EPISODES}")
+
+    def agent_itself(self) -> Agent:
+        """Make the agent; raise ValueError for a parameter out of range."""
+        if self.agent == "location":
+            return LocationAgent(self.goal_distance_m)
+        states = ToleranceStates(self.tolerance_db) if self.tolerance_db > 0.0 else ExactStates()
+        return RssAgent(states, self.goal_rss_dbm)
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """What the UAV flew in one episode.
+
+    Attributes
+    ----------
+    episode : int
+        Counted from 1.
+    position : (n + 1, 2) float64
+        Cell centres [m], the start first.
+    reached : bool
+        Whether it found the source; otherwise the episode was cut.
+    """
+
+    episode: int
+    position: NDArray[np.float64]
+    reached: bool
+
+    @property
+    def steps(self) -> int:
+        """Number n of steps."""
+        return len(self.position) - 1
+
+
+def kept_episodes(episodes: int, kept: int = KEPT_FLIGHTS) -> NDArray[np.int64]:
+    """Episodes (n,), from 1 on, whose flights are kept: all, or ever wider apart.
+
+    Parameters
+    ----------
+    episodes : int
+        Episodes there will be.
+    kept : int
+        Most flights to keep.
+    """
+    if episodes <= kept:
+        return np.arange(1, episodes + 1)
+    return np.unique(np.geomspace(1, episodes, kept).round().astype(np.int64))
+
+
+class LiveTraining:
+    """A training on a thread of its own, which can be watched and stopped.
+
+    Parameters
+    ----------
+    traced : TracedMap
+        What the UAV flies in.
+    settings : TrainingSettings
+
+    Attributes
+    ----------
+    flights : list of Flight
+        Flights of the episodes kept so far, in their order.
+    shortest_steps : int or None
+        Fewest steps to the goal, once known.
+    converged_episode : int or None
+        Episode with the third equal flight in a row; None before.
+    problem : str
+        Why it could not go on; empty if it could.
+    """
+
+    def __init__(self, traced: TracedMap, settings: TrainingSettings) -> None:
+        self.traced, self.settings = traced, settings
+        self.flights: list[Flight] = []
+        self.shortest_steps: int | None = None
+        self.converged_episode: int | None = None
+        self.problem = ""
+        self._steps = np.empty(settings.episodes, dtype=np.int32)
+        self._n_flown = 0
+        self._stop = Event()
+        self._thread = Thread(target=self._run, name="training", daemon=True)
+
+    def start(self) -> None:
+        """Begin to train."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Tell it to stop; what it has learnt by then stays."""
+        self._stop.set()
+
+    def join(self, timeout_s: float | None = None) -> None:
+        """Wait for its end."""
+        self._thread.join(timeout_s)
+
+    @property
+    def running(self) -> bool:
+        """Whether it is still learning."""
+        return self._thread.is_alive()
+
+    @property
+    def steps(self) -> NDArray[np.int32]:
+        """Steps of each episode flown so far, (n,)."""
+        return self._steps[: self._n_flown]
+
+    def _run(self) -> None:
+        try:
+            self._learn()
+        except (WorldError, ValueError) as error:
+            self.problem = str(error)
+        except Exception:
+            LOGGER.exception("the training failed")
+            self.problem = "the training failed; the server's log says why"
+
+    def _learn(self) -> None:
+        settings = self.settings
+        world = GridWorld.from_map(self.traced.plan, self.traced.radio_map, settings.speed)
+        problem = LearningProblem.of(world, settings.agent_itself(), settings.learning)
+        self.shortest_steps = shortest_path(world, problem.process.terminal).steps
+        learner = problem.learner(generator_states(settings.seed, 0), settings.episodes)
+        learner.trace = np.empty(settings.learning.max_steps, dtype=np.int32)
+        for episode in kept_episodes(settings.episodes).tolist():
+            if not self._advance(learner, episode):
+                return
+            self.flights.append(_latest_flight(learner, world))
+
+    def _advance(self, learner: Learner, episode: int) -> bool:
+        """Fly up to an episode and log it; False when told to stop on the way."""
+        counters = learner.run.counters
+        while (flown := int(counters[common.EPISODE])) < episode:
+            if self._stop.is_set():
+                return False
+            learner.advance(min(episode, flown + _CHUNK_EPISODES))
+            now = int(counters[common.EPISODE])
+            self._steps[flown:now] = learner.run.episodes[flown:now, common.STEPS]
+            self._n_flown = now
+            if counters[common.CONVERGED_EPISODE] >= 0:
+                self.converged_episode = int(counters[common.CONVERGED_EPISODE])
+        return True
+
+
+def _latest_flight(learner: Learner, world: GridWorld) -> Flight:
+    """Flight of the episode that a learner flew last."""
+    assert learner.trace is not None
+    episode = int(learner.run.counters[common.EPISODE])
+    steps, _, truncated = learner.run.episodes[episode - 1]
+    states = np.concatenate(([world.start_state], learner.trace[:steps]))
+    return Flight(episode, world.position[states], not truncated)

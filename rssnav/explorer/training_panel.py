@@ -1,0 +1,222 @@
+"""Choose an agent, train it, watch it learn."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import panel as pn
+from bokeh.models import ColumnDataSource, Range1d, Span
+from bokeh.plotting import figure
+from numpy.typing import NDArray
+
+from rssnav.agents import LocationAgent, QLearning, RssAgent
+from rssnav.explorer.map_figure import FONT
+from rssnav.explorer.session import Session, suggested_goal_dbm
+from rssnav.explorer.styles import WIDGETS, pairs, problem
+from rssnav.explorer.training import MAX_EPISODES, LiveTraining, TrainingSettings
+from rssnav.figures import AGENT_COLOURS, FAINT, INK
+
+MOST_POINTS = 2000
+SMOOTHED = 25
+"""Episodes that the line of the curve averages over."""
+
+AGENTS = {"RSS": "rss", "Location": "location"}
+_LEARNING = {
+    "gamma": ("Discount \u03b3", 0.01),
+    "eta": ("Decay \u03b7 a step", 1e-5),
+    "alpha_max": ("First learning rate \u03b1", 0.05),
+    "epsilon_max": ("First exploration \u03b5", 0.05),
+    "initial_q": ("First Q", 10.0),
+    "goal_reward": ("Reward of the goal", 100.0),
+}
+
+
+class TrainingPanel:
+    """Widgets of a training, and its learning curve.
+
+    Parameters
+    ----------
+    session : Session
+
+    Attributes
+    ----------
+    view : panel.Column
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._refused = ""
+        self._make_inputs()
+        self._train = self._button("Train", "primary", self._begin)
+        self._stop = self._button("Stop", "default", lambda _event: session.stop_training())
+        self._curve = LearningCurve()
+        self._facts = pn.pane.HTML("", stylesheets=WIDGETS, sizing_mode="stretch_width")
+        self.view = pn.Column(
+            pn.Row(self._agent, margin=0),
+            pn.FlexBox(*self._inputs.values(), gap="0px 8px"),
+            pn.Card(
+                pn.FlexBox(*self._learning.values(), gap="0px 8px"),
+                title="Parameters of Q-learning",
+                collapsed=True,
+                stylesheets=WIDGETS,
+                sizing_mode="stretch_width",
+                header_background="#f4f1ea",
+            ),
+            pn.Row(self._train, self._stop),
+            pn.pane.Bokeh(self._curve.model, sizing_mode="stretch_width"),
+            self._facts,
+            sizing_mode="stretch_width",
+        )
+        self.show()
+
+    def suggest_goal(self) -> None:
+        """Set the goal to what the newest complete map has cells for."""
+        traced = self._session.complete_map
+        if traced is not None:
+            goal = suggested_goal_dbm(traced.radio_map, RssAgent.terminal_dbm)
+            self._inputs["goal_rss_dbm"].value = goal
+
+    def show(self) -> None:
+        """Show how far the session's training is."""
+        training = self._session.training
+        running = training is not None and training.running
+        self._train.disabled = running or self._session.complete_map is None
+        self._stop.disabled = not running
+        self._curve.show(training)
+        trouble = self._refused or (training.problem if training is not None else "")
+        self._facts.object = problem(trouble) if trouble else _facts(training)
+
+    def _button(self, name: str, kind: str, act: Callable[[Any], None]) -> Any:
+        button = pn.widgets.Button(label=name, button_type=kind, stylesheets=WIDGETS, width=110)
+        button.on_click(act)
+        return button
+
+    def _make_inputs(self) -> None:
+        options: dict[str, Any] = {"stylesheets": WIDGETS, "width": 165, "margin": (3, 5)}
+        whole, number = pn.widgets.IntInput, pn.widgets.FloatInput
+        self._agent = pn.widgets.RadioButtonGroup(
+            options=AGENTS, value="rss", stylesheets=WIDGETS, width=220
+        )
+        self._inputs: dict[str, Any] = {
+            "speed": whole(label="Speed [cells a step]", value=1, start=1, end=8, **options),
+            "episodes": whole(
+                label="Episodes", value=1000, start=1, end=MAX_EPISODES, step=100, **options
+            ),
+            "goal_rss_dbm": number(
+                label="Goal: RSS above [dBm]", value=RssAgent.terminal_dbm, step=1.0, **options
+            ),
+            "goal_distance_m": number(
+                label="Goal: nearer than [m]",
+                value=LocationAgent.terminal_distance_m,
+                start=0.1,
+                step=0.5,
+                visible=False,
+                **options,
+            ),
+            "tolerance_db": number(
+                label="Tolerance of states [dB]", value=0.0, start=0.0, step=0.5, **options
+            ),
+            "seed": whole(label="Seed", value=0, start=0, **options),
+        }
+        self._learning: dict[str, Any] = {
+            name: number(label=label, value=getattr(QLearning, name), step=step, **options)
+            for name, (label, step) in _LEARNING.items()
+        }
+        self._agent.param.watch(self._choose_agent, "value")
+
+    def _choose_agent(self, event: Any) -> None:
+        for name, agent in (
+            ("goal_rss_dbm", "rss"),
+            ("tolerance_db", "rss"),
+            ("goal_distance_m", "location"),
+        ):
+            self._inputs[name].visible = event.new == agent
+
+    def _begin(self, _event: Any) -> None:
+        """Train with what the widgets say."""
+        values = {name: widget.value for name, widget in self._inputs.items()}
+        try:
+            learning = QLearning(**{name: widget.value for name, widget in self._learning.items()})
+            settings = TrainingSettings(agent=self._agent.value, learning=learning, **values)
+        except (TypeError, ValueError) as error:
+            self._refused = str(error)
+            self.show()
+            return
+        self._refused = ""
+        self._session.train(settings)
+
+
+class LearningCurve:
+    """Steps of each episode, their running mean, and the fewest possible.
+
+    Attributes
+    ----------
+    model : bokeh.plotting.figure
+    """
+
+    def __init__(self) -> None:
+        self._episodes, self._range = Range1d(start=0, end=1000), Range1d(start=1, end=1000)
+        self.model = figure(
+            height=210,
+            sizing_mode="stretch_width",
+            y_axis_type="log",
+            x_range=self._episodes,
+            y_range=self._range,
+            tools="",
+            toolbar_location=None,
+            outline_line_color=None,
+            x_axis_label="episode",
+            y_axis_label="steps",
+        )
+        self.model.grid.grid_line_color = "#eeeae1"
+        for axis in (*self.model.xaxis, *self.model.yaxis):
+            axis.update(
+                axis_line_color=None, axis_label_text_font=FONT, major_label_text_font=FONT,
+                axis_label_text_font_style="normal", axis_label_text_color=INK,
+            )  # fmt: skip
+        self._points = ColumnDataSource({"x": [], "y": []})
+        self._mean = ColumnDataSource({"x": [], "y": []})
+        self._dots = self.model.scatter("x", "y", source=self._points, size=3, alpha=0.25)
+        self._line = self.model.line("x", "y", source=self._mean, line_width=2)
+        self._fewest = Span(dimension="width", line_color=FAINT, line_dash="dashed", visible=False)
+        self.model.add_layout(self._fewest)
+
+    def show(self, training: LiveTraining | None) -> None:
+        """Show a training's episodes so far."""
+        steps = np.empty(0, np.int32) if training is None else training.steps
+        if training is not None:
+            colour = AGENT_COLOURS[training.settings.agent]
+            self._dots.glyph.update(fill_color=colour, line_color=None)
+            self._line.glyph.update(line_color=colour)
+            self._episodes.update(end=training.settings.episodes)
+            fewest = training.shortest_steps
+            self._fewest.update(location=fewest, visible=fewest is not None)
+        if steps.size:
+            self._range.update(start=0.7 * int(steps.min()), end=1.4 * int(steps.max()))
+        episodes = 1 + np.arange(steps.size)
+        chosen = slice(None, None, -(-steps.size // MOST_POINTS) or 1)
+        self._points.data = {"x": episodes[chosen], "y": steps[chosen]}
+        self._mean.data = {"x": episodes[chosen], "y": running_mean(steps, SMOOTHED)[chosen]}
+
+
+def running_mean(values: NDArray[np.int32], width: int) -> NDArray[np.float64]:
+    """Mean of each value (n,) and up to width - 1 before it."""
+    total = np.concatenate(([0.0], np.cumsum(values, dtype=np.float64)))
+    last = np.arange(1, len(total))
+    first = np.maximum(last - width, 0)
+    return (total[last] - total[first]) / (last - first)
+
+
+def _facts(training: LiveTraining | None) -> str:
+    if training is None:
+        return '<p class="quiet">The UAV flies from the start until it finds the source.</p>'
+    steps, converged = training.steps, training.converged_episode
+    latest = f"{steps[-1]} steps" if steps.size else "-"
+    return pairs(
+        [
+            ("episodes", f"{steps.size} of {training.settings.episodes}"),
+            ("latest", latest),
+            ("fewest possible", f"{training.shortest_steps or '-'} steps"),
+            ("converged", "not yet" if converged is None else f"after episode {converged}"),
+        ]
+    )
