@@ -7,10 +7,10 @@ RESULTS ?= results
 QUICK ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help install maps experiments test lint types contracts bench docs dist clean
+.PHONY: help install maps experiments test test-lowest lint types contracts bench docs dist clean
 
 help: ## list these targets
-	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1|/' | \
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
 		awk -F'|' '{ printf "  make %-12s %s\n", $$1, $$2 }'
 
 install: $(VENV)/installed ## make the virtual environment and install everything into it
@@ -29,6 +29,11 @@ experiments: install ## the whole paper: maps, training, figures, tables, report
 
 test: install ## run the tests
 	$(BIN)/python -m pytest
+
+test-lowest: ## run the tests on the oldest versions of all libraries, in an environment of their own
+	test -x $(VENV)-lowest/bin/python || $(PYTHON) -m venv $(VENV)-lowest
+	$(VENV)-lowest/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints-lowest.txt --editable '.[dev]'
+	$(VENV)-lowest/bin/python -m pytest -W ignore::DeprecationWarning -W ignore::PendingDeprecationWarning
 
 lint: install ## check style and format
 	$(BIN)/ruff check .
@@ -51,5 +56,5 @@ dist: install ## build wheel and source archive into dist/
 	$(BIN)/python -m build
 
 clean: ## remove the environment, results and caches
-	rm -rf $(VENV) $(RESULTS) build dist docs/_build .pytest_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) $(VENV)-lowest $(RESULTS) build dist docs/_build .pytest_cache .ruff_cache .hypothesis .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

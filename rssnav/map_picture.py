@@ -33,7 +33,7 @@ from rssnav.figures import (
 )
 
 NO_PATH = "#e3e3e3"
-HATCH = "xxxxxx"
+HATCH = "xxxx"
 FREE_WALL = "#b9b3a8"
 LONG_M = 40.0
 """A longer plan is drawn over both columns of a page."""

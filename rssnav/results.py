@@ -211,6 +211,15 @@ _PER_RUN = (
 )
 
 
+def median_run(result: TrainingResult) -> int | None:
+    """Return the index of the run whose flight is of median length; None if none arrives."""
+    arrived = np.flatnonzero(result.reached)
+    if arrived.size == 0:
+        return None
+    by_length = arrived[np.argsort(result.path_length_m[arrived], kind="stable")]
+    return int(by_length[(arrived.size - 1) // 2])
+
+
 def padded(rows: list[NDArray[Any]], fill: int) -> NDArray[Any]:
     """Stack rows of different lengths, shorter ones filled at their end."""
     table = np.full((len(rows), max(row.size for row in rows)), fill, dtype=rows[0].dtype)

@@ -11,7 +11,7 @@ import typer
 
 from rssnav.cli.console import note, print_table, stage_progress
 from rssnav.cli.kernel_cache import learning_cache, tracer_cache
-from rssnav.cli.options import Threads, examples
+from rssnav.cli.options import Style, Threads, examples
 
 if TYPE_CHECKING:
     from rssnav.experiments import Paper
@@ -70,6 +70,7 @@ def run_experiments(
         bool,
         typer.Option("--resume/--no-resume", help="Take over trainings that are already there."),
     ] = True,
+    style: Style = None,
     threads: Threads = None,
 ) -> None:
     """Run the whole paper, or a study beyond it: maps, trainings, figures, tables, a report.
@@ -79,11 +80,12 @@ def run_experiments(
     if what is not What.PAPER:
         if runs is not None or not resume:
             raise typer.BadParameter("--runs and --no-resume belong to the paper")
-        return _run_study(what, out, quick, seed, threads)
+        return _run_study(what, out, quick, seed, style, threads)
     from rssnav.experiments import run_paper
+    from rssnav.figures import chosen_style
 
     try:
-        with stage_progress(compiles=_must_compile()) as show:
+        with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
             paper = run_paper(
                 out,
                 quick=quick,
@@ -102,21 +104,25 @@ def run_experiments(
     _print(paper)
 
 
-def _run_study(what: What, out: Path, quick: bool, seed: int, threads: int | None) -> None:
+def _run_study(
+    what: What, out: Path, quick: bool, seed: int, style: str | None, threads: int | None
+) -> None:
     from rssnav.experiments import comparison, noise, sensitivity
+    from rssnav.figures import chosen_style
 
     study = {What.SENSITIVITY: sensitivity, What.NOISE: noise, What.COMPARISON: comparison}[what]
-    with stage_progress(compiles=_must_compile()) as show:
+    with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
         done = study.run(out, quick=quick, seed=seed, threads=threads, progress=show)
     for file in done.files:
         print(file)
 
 
-def remake_report(out: Out = RESULTS, threads: Threads = None) -> None:
+def remake_report(out: Out = RESULTS, style: Style = None, threads: Threads = None) -> None:
     """Make figures, tables and report again from the maps and trainings of an earlier run."""
     from rssnav.experiments import report_again
+    from rssnav.figures import chosen_style
 
-    with stage_progress(compiles=_must_compile()) as show:
+    with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
         paper = report_again(out, threads=threads, progress=show, notice=note)
     _print(paper)
 

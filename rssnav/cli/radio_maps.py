@@ -22,6 +22,7 @@ from rssnav.cli.options import (
     Picture,
     Plan,
     Reflections,
+    Style,
     Threads,
     check_suffix,
     examples,
@@ -51,6 +52,7 @@ def map_plan(
         Path, typer.Option("-o", "--output", metavar="FILE", help="Where to keep the map (HDF5).")
     ],
     picture: Picture = None,
+    style: Style = None,
     cell_size: CellSize = CELL_SIZE_M,
     height: Height = HEIGHT_M,
     reflections: Reflections = TraceConfig.max_reflections,
@@ -86,7 +88,7 @@ def map_plan(
             force=force,
         )
     if picture is not None:
-        _draw(loaded, radio_map, picture)
+        _draw(loaded, radio_map, picture, style)
     facts = _facts(radio_map, output, picture)
     if as_json:
         print_json({"plan": plan, **facts})
@@ -98,6 +100,7 @@ def map_scenarios(
     out: Annotated[Path, typer.Option(metavar="FOLDER", help="Where to write them.")] = Path(
         "results/maps"
     ),
+    style: Style = None,
     threads: Threads = None,
     force: Force = False,
 ) -> None:
@@ -115,8 +118,8 @@ def map_scenarios(
             radio_map = make_map(
                 plan, file, threads=threads, progress=progress, notice=note, force=force
             )
-            if _is_older(picture, file):
-                _draw(plan, radio_map, picture)
+            if style is not None or _is_older(picture, file):
+                _draw(plan, radio_map, picture, style)
     for name in SCENARIOS:
         print(out / f"{name}.h5")
         print(out / f"{name}.png")
@@ -126,10 +129,12 @@ def _is_older(picture: Path, map_file: Path) -> bool:
     return not picture.exists() or picture.stat().st_mtime < map_file.stat().st_mtime
 
 
-def _draw(plan: FloorPlan, radio_map: RadioMap, picture: Path) -> None:
+def _draw(plan: FloorPlan, radio_map: RadioMap, picture: Path, style: str | None) -> None:
+    from rssnav.figures import chosen_style
     from rssnav.map_picture import save_map_picture
 
-    save_map_picture(plan, radio_map, picture)
+    with chosen_style(style):
+        save_map_picture(plan, radio_map, picture)
 
 
 def _facts(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from rssnav.figures import (
     new_figure,
     styled,
 )
-from rssnav.results import TrainingResult
+from rssnav.results import median_run
 from rssnav.world import GOAL_DISTANCE_M
 
 SPEED = 1
@@ -69,15 +69,6 @@ def _draw_median_flight(ax: Axes, data: PaperData, scenario: int, agent: AgentNa
     if median is not None:
         line = draw_flight(ax, result.trajectory_m(median), agent)
         line.set_label(f"{AGENT_LABELS[agent]} agent")
-
-
-def median_run(result: TrainingResult) -> int | None:
-    """Return the index of the run whose flight is of median length; None if none arrives."""
-    arrived = np.flatnonzero(result.reached)
-    if arrived.size == 0:
-        return None
-    by_length = arrived[np.argsort(result.path_length_m[arrived], kind="stable")]
-    return int(by_length[(arrived.size - 1) // 2])
 
 
 def _legend(figure: Figure, panels: Sequence[Axes]) -> None:
