@@ -6,23 +6,36 @@ Lengths are in metres, heights above the floor, angles in radians, gains linear 
 ends in ``_db`` or ``_dbm``.
 """
 
+from raytrace.antenna_patterns import PatternTable
 from raytrace.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
-from raytrace.errors import MapFileError, SceneError, SceneWarning
+from raytrace.errors import AntennaError, MapFileError, SceneError, SceneWarning
 from raytrace.grid import Grid, TraceConfig
-from raytrace.paths import Paths
+from raytrace.materials import ABSORBER, PERFECT_CONDUCTOR, Dielectric, Layer, Layered, Material
+from raytrace.path_statistics import PathStatistics
+from raytrace.paths import ImpulseResponse, Paths
 from raytrace.radio_map import RadioMap
 from raytrace.scene import Scene
 from raytrace.trace import compute_radio_map, trace_paths
 from raytrace.transmitter import Transmitter
 
 __all__ = [
+    "ABSORBER",
     "DIPOLE_PEAK_GAIN_DBI",
+    "PERFECT_CONDUCTOR",
     "Antenna",
+    "AntennaError",
+    "Dielectric",
     "Grid",
     "HalfWaveDipole",
+    "ImpulseResponse",
     "Isotropic",
+    "Layer",
+    "Layered",
     "MapFileError",
+    "Material",
+    "PathStatistics",
     "Paths",
+    "PatternTable",
     "RadioMap",
     "Scene",
     "SceneError",

@@ -1,25 +1,52 @@
-"""Antenna patterns: field amplitude over the polar angle, vertical polarisation.
+"""Antenna patterns: two field amplitudes over the direction, and their tables for the kernels.
 
-A pattern here is rotationally symmetric about the vertical axis and polarised along the
-polar unit vector, as a vertical wire antenna is. The tracer reads it as a function of the
-direction's z component, cos(theta), where theta is the angle from the zenith.
+Towards a unit direction s = (u_x c, u_y c, sigma) with horizontal part u, cosine c and sine sigma
+of the elevation, an antenna has the amplitudes `upright` along tau = (z - (z . s) s) / c, which
+points up, and `level` along psi = z x s / c (docs/theory.md, eq. 10). In spherical coordinates
+tau = -theta-hat and psi = phi-hat. Amplitudes are relative to a 0 dBi radiator: the gain in a
+direction is |upright|^2 + |level|^2, and a lossless antenna's gain averages to 1 over the sphere.
+
+The same pattern serves for receiving. A wave that arrives along s comes from the direction -s,
+where tau is the same vector and psi the opposite one: the antenna takes up
+upright(-s) E_tau - level(-s) E_psi (docs/theory.md, eq. 32).
 """
 
 from dataclasses import dataclass
-from typing import Protocol
+from math import isfinite
+from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from raytrace.errors import SceneError
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
 
 DIPOLE_PEAK_GAIN_DBI = 2.150_88
 """Peak gain of a lossless half-wave dipole over an isotropic radiator [dB] (Balanis, 4-93)."""
 
 
+class Amplitudes(NamedTuple):
+    """Field amplitudes towards directions; two arrays of the directions' shape [1]."""
+
+    upright: Floats | Complexes
+    level: Floats | Complexes
+
+
 class Antenna(Protocol):
     """What the tracer asks of an antenna."""
 
-    def amplitude(self, cos_theta: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Field amplitude relative to a 0 dBi radiator, at directions with that z component."""
+    def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
+        """Field amplitudes towards directions.
+
+        Parameters
+        ----------
+        sine
+            Sine of the elevation, the direction's z component; any shape.
+        azimuth
+            From +x towards +y [rad]; the same shape. At the zenith it tells what tau means.
+        """
         ...
 
     def describe(self) -> str:
@@ -29,30 +56,60 @@ class Antenna(Protocol):
 
 @dataclass(frozen=True)
 class HalfWaveDipole:
-    """Vertical half-wave dipole, cos(pi/2 cos theta) / sin theta (Balanis, eq. 4-84).
+    """Half-wave dipole, cos(pi/2 cos chi) / sin chi at the angle chi from its axis.
+
+    Balanis, eq. 4-84; docs/theory.md, eqs. 9 and 31.
 
     Attributes
     ----------
     peak_gain_db
-        Gain at the horizon [dB]. The default normalises it to 0 dB, as the paper does;
+        Gain across the axis [dB]. The default normalises it to 0 dB, as the paper does;
         a lossless dipole has `DIPOLE_PEAK_GAIN_DBI`.
+    axis
+        (x, y, z) along the wire, of any length; upright by default. The opposite axis is the
+        same antenna with the opposite phase.
     """
 
     peak_gain_db: float = 0.0
+    axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
-    def amplitude(self, cos_theta: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Field amplitude over the direction's z component, any shape [1]."""
-        sin_theta = np.sqrt(np.maximum(1.0 - cos_theta**2, 1e-12))
-        return 10.0 ** (self.peak_gain_db / 20.0) * np.cos(0.5 * np.pi * cos_theta) / sin_theta
+    def __post_init__(self) -> None:
+        """Check the axis; raise ValueError where it is no direction."""
+        length = float(np.linalg.norm(self.axis))
+        if len(self.axis) != 3 or not (isfinite(length) and length > 0.0):
+            raise ValueError(f"axis = {self.axis}: expected three finite numbers, not all 0")
+        if abs(length - 1.0) < 1e-12:
+            length = 1.0
+        x, y, z = (float(part) / length for part in self.axis)
+        object.__setattr__(self, "axis", (x, y, z))
+
+    def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
+        """Field amplitudes towards directions; see `Antenna.amplitudes`."""
+        cosine = np.sqrt(np.maximum(1.0 - sine**2, 0.0))
+        x, y, z = self.axis
+        ahead = x * np.cos(azimuth) + y * np.sin(azimuth)
+        aside = y * np.cos(azimuth) - x * np.sin(azimuth)
+        along_wire = ahead * cosine + z * sine
+        size = 10.0 ** (self.peak_gain_db / 20.0) * _dipole_shape(along_wire)
+        return Amplitudes(size * (z * cosine - ahead * sine), size * aside)
 
     def describe(self) -> str:
         """Name and parameters in one line."""
-        return f"vertical half-wave dipole, peak gain {self.peak_gain_db:g} dB"
+        x, y, z = self.axis
+        way = "vertical" if z == 1.0 else f"along ({x:g}, {y:g}, {z:g})"
+        return f"half-wave dipole, {way}, peak gain {self.peak_gain_db:g} dB"
+
+
+def _dipole_shape(cos_chi: Floats) -> Floats:
+    """cos(pi/2 cos chi) / sin^2 chi, which is smooth and pi/4 along the wire."""
+    sin2 = 1.0 - cos_chi**2
+    safe = np.maximum(sin2, 1e-9)
+    return np.where(sin2 > 1e-9, np.cos(0.5 * np.pi * cos_chi) / safe, 0.25 * np.pi)
 
 
 @dataclass(frozen=True)
 class Isotropic:
-    """The same amplitude in every direction, polarised along theta.
+    """The same amplitude in every direction, polarised along tau.
 
     Attributes
     ----------
@@ -62,10 +119,94 @@ class Isotropic:
 
     gain_db: float = 0.0
 
-    def amplitude(self, cos_theta: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Field amplitude, any shape [1]."""
-        return np.full_like(cos_theta, 10.0 ** (self.gain_db / 20.0))
+    def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
+        """Field amplitudes towards directions; see `Antenna.amplitudes`."""
+        everywhere = np.full(np.shape(sine), 10.0 ** (self.gain_db / 20.0))
+        return Amplitudes(everywhere, np.zeros_like(everywhere))
 
     def describe(self) -> str:
         """Name and parameters in one line."""
-        return f"isotropic, theta-polarised, gain {self.gain_db:g} dB"
+        return f"isotropic, upright-polarised, gain {self.gain_db:g} dB"
+
+
+ELEVATION_STEPS = 256
+AZIMUTH_STEPS = 512
+"""Steps of an antenna table from the nadir to the zenith, and once around: 0.9 deg at most."""
+
+
+def antenna_tables(antenna: Antenna) -> tuple[Complexes, Complexes]:
+    """Tabulate an antenna's amplitudes for look-up by bilinear interpolation.
+
+    The grid is regular in the coordinates of `table_coordinates`: two quotients instead of two
+    angles, which cost no trigonometry and have nodes at the zenith, the horizon and the axes.
+    A half-wave dipole of any axis is met to 1e-4 of its peak amplitude.
+
+    Returns
+    -------
+    upright, level : ndarray
+        (ELEVATION_STEPS + 1, AZIMUTH_STEPS + 1) complex: first index elevation from nadir to
+        zenith, second azimuth from +x once around, the last column repeating the first.
+    """
+    rise = np.linspace(-1.0, 1.0, ELEVATION_STEPS + 1)
+    elevation = np.arctan2(rise, 1.0 - np.abs(rise))
+    turn = np.linspace(0.0, 4.0, AZIMUTH_STEPS + 1)
+    quarter = np.minimum(np.floor(turn), 3.0)
+    azimuth = quarter * (0.5 * np.pi) + np.arctan2(turn - quarter, quarter + 1.0 - turn)
+    found = antenna.amplitudes(*np.meshgrid(np.sin(elevation), azimuth, indexing="ij"))
+    upright, level = (np.asarray(part, dtype=np.complex128) for part in found)
+    return upright, level
+
+
+def table_coordinates(direction: ArrayLike) -> tuple[Floats, Floats]:
+    """Where directions lie on the grid of `antenna_tables`.
+
+    Parameters
+    ----------
+    direction
+        (..., 3) unit vectors (x, y, z).
+
+    Returns
+    -------
+    row, column : ndarray
+        (...,) 0 to ELEVATION_STEPS by sigma / (|sigma| + c), and 0 to AZIMUTH_STEPS quarter by
+        quarter by |y| / (|x| + |y|) or |x| / (|x| + |y|).
+    """
+    x, y, z = np.moveaxis(np.asarray(direction, dtype=np.float64), -1, 0)
+    row = (1.0 + z / (np.abs(z) + np.hypot(x, y))) * (0.5 * ELEVATION_STEPS)
+    share = np.abs(y) / np.maximum(np.abs(x) + np.abs(y), 1e-300)
+    turn = np.where(x >= 0.0, np.where(y >= 0.0, share, 4.0 - share), 0.0)
+    turn = np.where(x < 0.0, np.where(y >= 0.0, 2.0 - share, 2.0 + share), turn)
+    return row, turn * (0.25 * AZIMUTH_STEPS)
+
+
+def upright_amplitude(antenna: Antenna, sine: Floats) -> Floats:
+    """Amplitude along tau of an antenna that is the same all around and has no other part.
+
+    Raises
+    ------
+    SceneError
+        For an antenna that is not of that kind.
+    """
+    around = np.linspace(0.0, 2.0 * np.pi, 13)
+    upright, level = antenna.amplitudes(*np.meshgrid(sine, around, indexing="ij"))
+    first = upright[:, 0]
+    if np.any(level) or np.iscomplexobj(upright) or not np.allclose(upright, first[:, None]):
+        raise SceneError(
+            f"antenna {antenna.describe()!r}: expected one that is the same all around and "
+            "polarised upright"
+        )
+    return np.asarray(first, dtype=np.float64)
+
+
+def look_up(tables: tuple[Complexes, Complexes], direction: ArrayLike) -> Amplitudes:
+    """Interpolate the tables of an antenna in directions (..., 3), as the kernels do."""
+    row, column = table_coordinates(direction)
+    i = np.minimum(row.astype(np.int64), ELEVATION_STEPS - 1)
+    j = np.minimum(column.astype(np.int64), AZIMUTH_STEPS - 1)
+    v, w = row - i, column - j
+    upright, level = (
+        (1.0 - v) * ((1.0 - w) * t[i, j] + w * t[i, j + 1])
+        + v * ((1.0 - w) * t[i + 1, j] + w * t[i + 1, j + 1])
+        for t in tables
+    )
+    return Amplitudes(upright, level)

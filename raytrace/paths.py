@@ -1,12 +1,19 @@
 """Single paths: where they go, what they meet, how strong they arrive."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.constants import SPEED_OF_LIGHT
+from raytrace.extras import needs_extra
 from raytrace.kernels.path_points import DIFFRACTION, NOTHING, REFLECTION
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 INTERACTION_NAMES = {NOTHING: "", REFLECTION: "R", DIFFRACTION: "D"}
 
@@ -73,15 +80,89 @@ class Paths:
         """Interactions of one path in words, "RRD" for example; "LOS" for none."""
         return "".join(INTERACTION_NAMES[int(k)] for k in self.interactions[path]) or "LOS"
 
-    def at(self, receiver: int) -> "Paths":
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a tidy table, a row a path; pandas is needed (``pip install "rssnav[data]"``).
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns ``receiver``, ``sequence`` (as `sequence` writes it), ``n_reflections``,
+            ``n_diffractions``, ``length_m``, ``delay_s``, ``gain_real``, ``gain_imag``,
+            ``gain_db``, and the azimuth and zenith angles [rad] ``departure_azimuth``,
+            ``departure_zenith``, ``arrival_azimuth``, ``arrival_zenith``.
+        """
+        with needs_extra("data"):
+            import pandas as pd
+        departure, arrival = self.departure, self.arrival
+        return pd.DataFrame(
+            {
+                "receiver": self.receiver,
+                "sequence": [self.sequence(k) for k in range(len(self))],
+                "n_reflections": np.count_nonzero(self.interactions == REFLECTION, axis=1),
+                "n_diffractions": np.count_nonzero(self.interactions == DIFFRACTION, axis=1),
+                "length_m": self.length_m,
+                "delay_s": self.delay_s,
+                "gain_real": self.gain.real,
+                "gain_imag": self.gain.imag,
+                "gain_db": self.gain_db,
+                "departure_azimuth": departure[:, 0],
+                "departure_zenith": departure[:, 1],
+                "arrival_azimuth": arrival[:, 0],
+                "arrival_zenith": arrival[:, 1],
+            }
+        )
+
+    def impulse_response(
+        self,
+        bandwidth_hz: float,
+        n_taps: int | None = None,
+        *,
+        start_s: float = 0.0,
+        n_receivers: int | None = None,
+    ) -> ImpulseResponse:
+        """Sample each receiver's channel, band-limited to a bandwidth (docs/theory.md, eq. 39).
+
+        The taps are ``sum of gain_i sinc(n - B (tau_i - start))``, 1 / B apart: the complex
+        baseband channel around the carrier, whose phase the gains hold already.
+
+        Parameters
+        ----------
+        bandwidth_hz
+            B [Hz].
+        n_taps
+            How many; by default 16 more than reach the latest path.
+        start_s
+            Delay of the first tap [s].
+        n_receivers
+            How many; by default up to the last one that a path reaches.
+
+        Raises
+        ------
+        ValueError
+            For a bandwidth that is not positive, or no tap.
+        """
+        if not bandwidth_hz > 0.0:
+            raise ValueError(f"bandwidth_hz = {bandwidth_hz}: expected a positive number")
+        late = float(self.delay_s.max(initial=start_s)) - start_s
+        taps = int(np.ceil(late * bandwidth_hz)) + 17 if n_taps is None else n_taps
+        if taps < 1:
+            raise ValueError(f"n_taps = {taps}: expected at least 1")
+        most = int(self.receiver.max(initial=-1)) + 1 if n_receivers is None else n_receivers
+        channel = np.zeros((most, taps), dtype=np.complex128)
+        shift = bandwidth_hz * (self.delay_s - start_s)
+        for n in range(taps):
+            np.add.at(channel[:, n], self.receiver, self.gain * np.sinc(n - shift))
+        return ImpulseResponse(channel, start_s + np.arange(taps) / bandwidth_hz)
+
+    def at(self, receiver: int) -> Paths:
         """Return the paths of one receiver."""
         return self._rows(np.flatnonzero(self.receiver == receiver))
 
-    def strongest_first(self) -> "Paths":
+    def strongest_first(self) -> Paths:
         """Return the same paths, receiver by receiver, strongest first."""
         return self._rows(np.lexsort([self.length_m, -np.abs(self.gain), self.receiver]))
 
-    def _rows(self, rows: NDArray[np.int64]) -> "Paths":
+    def _rows(self, rows: NDArray[np.int64]) -> Paths:
         return Paths(
             self.receiver[rows],
             self.interactions[rows],
@@ -89,6 +170,22 @@ class Paths:
             self.length_m[rows],
             self.gain[rows],
         )
+
+
+@dataclass(frozen=True, eq=False)
+class ImpulseResponse:
+    """Sampled channels.
+
+    Attributes
+    ----------
+    taps
+        (n_receivers, n_taps) complex amplitudes, both antennas included.
+    delay_s
+        (n_taps,) [s].
+    """
+
+    taps: NDArray[np.complex128]
+    delay_s: NDArray[np.float64]
 
 
 def _angles(direction: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,13 +1,14 @@
 """Radio maps in HDF5: readable without this project, whole or not there at all.
 
 `x` and `y` are dimension scales [m], so xarray opens a map with coordinates; every dataset has
-`units` and `long_name`. What made the map stands in the file's attributes.
+`units` and `long_name`. What made the map stands in the file's attributes; the pattern of an
+antenna given by a table stands in the group `transmit_antenna`.
 """
 
 import os
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -15,21 +16,20 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.antennas import HalfWaveDipole, Isotropic
+from raytrace.antenna_patterns import PatternTable
+from raytrace.antennas import Antenna, HalfWaveDipole, Isotropic
 from raytrace.errors import MapFileError
 from raytrace.grid import Grid, TraceConfig
-from raytrace.radio_map import RadioMap
+from raytrace.radio_map import LAYERS, RadioMap
 from raytrace.transmitter import Transmitter
 
 FORMAT = "rssnav radio map"
 FORMAT_VERSION = 1
 
-_DATASETS = {
-    "rss_dbm": ("dBm", "received signal strength, sum of the paths' powers"),
-    "rss_coherent_dbm": ("dBm", "received signal strength, power of the sum of the paths' fields"),
-    "path_count": ("1", "number of paths"),
+_ANTENNA = "transmit_antenna"
+_ANTENNAS: dict[str, type[HalfWaveDipole | Isotropic | PatternTable]] = {
+    kind.__name__: kind for kind in (HalfWaveDipole, Isotropic, PatternTable)
 }
-_ANTENNAS = {"HalfWaveDipole": HalfWaveDipole, "Isotropic": Isotropic}
 
 
 @contextmanager
@@ -53,17 +53,27 @@ def save_radio_map(radio_map: RadioMap, path: Path) -> None:
             scale = file.create_dataset(axis, data=getattr(radio_map.grid, axis))
             scale.attrs.update(units="m", long_name=f"{axis} of the cell centres")
             scale.make_scale(axis)
-        for name, (units, long_name) in _DATASETS.items():
-            data = file.create_dataset(name, data=getattr(radio_map, name), compression="gzip")
-            data.attrs.update(units=units, long_name=long_name)
+        for name, layer in radio_map.layers.items():
+            data = file.create_dataset(name, data=layer, compression="gzip")
+            data.attrs.update(units=LAYERS[name].units, long_name=LAYERS[name].long_name)
             data.dims[0].attach_scale(file["y"])
             data.dims[1].attach_scale(file["x"])
-        file.attrs.update(_attributes(radio_map))
+        file.attrs.update(attributes_of(radio_map))
+        _save_pattern(radio_map.transmitter.antenna, file)
 
 
-def _attributes(radio_map: RadioMap) -> dict[str, Any]:
+def _save_pattern(antenna: Antenna, file: h5py.File) -> None:
+    """Write the arrays of an antenna that has any."""
+    for name, value in vars(antenna).items():
+        if isinstance(value, np.ndarray):
+            file.create_dataset(f"{_ANTENNA}/{name}", data=value)
+
+
+def attributes_of(radio_map: RadioMap) -> dict[str, Any]:
+    """What made a map, as a file and a data set hold it; what is None is left out."""
     transmitter, grid = radio_map.transmitter, radio_map.grid
-    return {
+    antenna = {k: v for k, v in vars(transmitter.antenna).items() if not isinstance(v, np.ndarray)}
+    attributes = {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
         "plan_text": radio_map.plan_text,
@@ -73,11 +83,12 @@ def _attributes(radio_map: RadioMap) -> dict[str, Any]:
         "transmitter_position_m": np.array(transmitter.position),
         "transmitter_power_dbm": transmitter.power_dbm,
         "frequency_hz": transmitter.frequency_hz,
-        "transmit_antenna": type(transmitter.antenna).__name__,
-        **{f"transmit_antenna_{k}": v for k, v in vars(transmitter.antenna).items()},
+        _ANTENNA: type(transmitter.antenna).__name__,
+        **{f"{_ANTENNA}_{k}": v for k, v in antenna.items()},
         **asdict(radio_map.config),
         **{f"made_with_{k}": v for k, v in radio_map.provenance.items()},
     }
+    return {key: value for key, value in attributes.items() if value is not None}
 
 
 def load_radio_map(path: Path) -> RadioMap:
@@ -118,7 +129,8 @@ def _read(file: h5py.File, path: Path) -> RadioMap:
             f"{path}: format_version = {attributes['format_version']}, this program reads "
             f"{FORMAT_VERSION}; make the map anew"
         )
-    missing = [name for name in ("x", "y", *_DATASETS) if name not in file]
+    required = [name for name, layer in LAYERS.items() if layer.required]
+    missing = [name for name in ("x", "y", *required) if name not in file]
     if missing:
         raise MapFileError(f"{path}: dataset {missing[0]!r} is missing; make the map anew")
     grid = Grid(
@@ -127,7 +139,7 @@ def _read(file: h5py.File, path: Path) -> RadioMap:
         float(attributes["receiver_height_m"]),
         float(attributes["cell_size_m"]),
     )
-    layers = {name: _array(file, name) for name in _DATASETS}
+    layers = {name: _array(file, name) for name in LAYERS if name in file}
     for name, layer in layers.items():
         if layer.shape != grid.shape or np.isnan(layer).any():
             raise MapFileError(
@@ -138,8 +150,8 @@ def _read(file: h5py.File, path: Path) -> RadioMap:
     return RadioMap(
         **layers,
         grid=grid,
-        transmitter=_transmitter(attributes),
-        config=TraceConfig(int(attributes["max_reflections"]), int(attributes["max_diffractions"])),
+        transmitter=_transmitter(file, attributes),
+        config=_config(attributes),
         plan_text=str(attributes["plan_text"]),
         plan_sha256=str(attributes["plan_sha256"]),
         provenance={
@@ -155,19 +167,30 @@ def _array(file: h5py.File, name: str) -> NDArray[Any]:
     return np.asarray(dataset[()])
 
 
-def _transmitter(attributes: dict[str, Any]) -> Transmitter:
-    prefix = "transmit_antenna_"
-    parameters = {
-        k.removeprefix(prefix): float(v) for k, v in attributes.items() if k.startswith(prefix)
+def _config(attributes: dict[str, Any]) -> TraceConfig:
+    """Limits of the trace; those that the file does not name have their defaults."""
+    known = {f.name for f in fields(TraceConfig)} & set(attributes)
+    return TraceConfig(**{name: _plain(attributes[name]) for name in known})
+
+
+def _transmitter(file: h5py.File, attributes: dict[str, Any]) -> Transmitter:
+    prefix = f"{_ANTENNA}_"
+    parameters: dict[str, Any] = {
+        k.removeprefix(prefix): _plain(v) for k, v in attributes.items() if k.startswith(prefix)
     }
+    pattern = file.get(_ANTENNA)
+    if isinstance(pattern, h5py.Group):
+        parameters |= {str(name): _array(file, f"{_ANTENNA}/{name}") for name in pattern}
     x, y, z = attributes["transmitter_position_m"]
     return Transmitter(
         (float(x), float(y), float(z)),
         float(attributes["transmitter_power_dbm"]),
         float(attributes["frequency_hz"]),
-        _ANTENNAS[str(attributes["transmit_antenna"])](**parameters),
+        _ANTENNAS[str(attributes[_ANTENNA])](**parameters),
     )
 
 
 def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return tuple(value.tolist())
     return value.item() if isinstance(value, np.generic) else value

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fresnel
 
-from raytrace.antennas import Antenna, HalfWaveDipole
+from raytrace.antennas import Antenna, HalfWaveDipole, upright_amplitude
 from raytrace.kernels.field import Radio
 from raytrace.kernels.utd import TRANSITION_MAX, TRANSITION_STEPS
 from raytrace.materials import Slab, slab_tables
@@ -44,7 +44,7 @@ def make_radio(
 
 def antenna_table(antenna: Antenna) -> Floats:
     """Tabulate an antenna's amplitude over the z component of the direction, -1 to 1."""
-    amplitude = antenna.amplitude(np.linspace(-1.0, 1.0, ANTENNA_STEPS + 1))
+    amplitude = upright_amplitude(antenna, np.linspace(-1.0, 1.0, ANTENNA_STEPS + 1))
     return np.append(amplitude, amplitude[-1])
 
 

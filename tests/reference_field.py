@@ -14,6 +14,7 @@ from reference import DIFFRACTION, REFLECTION, Edge, Facets, Found
 from scipy.special import fresnel
 
 from raytrace import Antenna, Transmitter
+from raytrace.antennas import upright_amplitude
 from raytrace.materials import MATERIALS
 
 Floats = NDArray[np.float64]
@@ -133,7 +134,7 @@ def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
     rays = np.diff(found.vertices, axis=1)
     lengths = np.linalg.norm(rays, axis=2)
     first = unit(rays[:, 0])
-    field = radio.source.antenna.amplitude(first[:, 2])[:, None] * polarisation(first)
+    field = upright_amplitude(radio.source.antenna, first[:, 2])[:, None] * polarisation(first)
     field = field.astype(np.complex128)
     spread = 1.0 / lengths.sum(axis=1)
     for k in range(most):
@@ -147,7 +148,8 @@ def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
         field[rows] = diffracted(facets, radio, where, (before, behind), field[rows])
     last = np.count_nonzero(found.kinds, axis=1)
     arriving = unit(rays[np.arange(n), last])
-    received = dot(field, polarisation(arriving)) * radio.receive.amplitude(-arriving[:, 2])
+    taken_up = upright_amplitude(radio.receive, -arriving[:, 2])
+    received = dot(field, polarisation(arriving)) * taken_up
     wavelength = radio.source.wavelength_m
     phase = np.exp(-2j * np.pi / wavelength * lengths.sum(axis=1))
     return wavelength / (4.0 * np.pi) * spread * phase * received

@@ -14,6 +14,7 @@ from raytrace import (
     compute_radio_map,
     trace_paths,
 )
+from raytrace.antennas import upright_amplitude
 from raytrace.constants import SPEED_OF_LIGHT
 from raytrace.preparing import TIE_OFFSET_M
 
@@ -48,7 +49,7 @@ def test_25_dbm_at_2_m_are_minus_21_07_dbm() -> None:
     assert radio_map.rss_coherent_dbm[0, 0] == pytest.approx(radio_map.rss_dbm[0, 0], abs=1e-9)
 
 
-@pytest.mark.parametrize("frequency_hz", [0.9e9, 2.4e9, 5.8e9, 60e9])
+@pytest.mark.parametrize("frequency_hz", [1.2e9, 2.4e9, 5.8e9, 60e9])
 def test_isotropic_antennas_obey_friis_in_size_and_phase(frequency_hz: float) -> None:
     receivers = HALL.random_points(50, seed=3)
     source = Transmitter(tuple(SOURCE), frequency_hz=frequency_hz, antenna=Isotropic())
@@ -79,7 +80,7 @@ def test_a_lossless_dipole_gains_2_15_db_at_each_end() -> None:
 def test_the_peak_gain_is_that_of_a_lossless_dipole() -> None:
     """All power fed leaves: the mean of the power gain over the sphere is 1."""
     cos_theta = np.linspace(-1.0, 1.0, 200_001)
-    power = HalfWaveDipole(DIPOLE_PEAK_GAIN_DBI).amplitude(cos_theta) ** 2
+    power = upright_amplitude(HalfWaveDipole(DIPOLE_PEAK_GAIN_DBI), cos_theta) ** 2
     assert 0.5 * np.trapezoid(power, cos_theta) == pytest.approx(1.0, abs=1e-5)
 
 

@@ -1,21 +1,25 @@
 """A map file is whole or it is refused, and opens without this project."""
 
 import os
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+import xarray as xr
 
 from raytrace import (
+    Antenna,
     Grid,
     HalfWaveDipole,
     Isotropic,
     MapFileError,
+    PatternTable,
     RadioMap,
     TraceConfig,
     Transmitter,
+    radio_map,
 )
 
 LAYERS = ("rss_dbm", "rss_coherent_dbm", "path_count")
@@ -44,8 +48,17 @@ def saved(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("antenna", [HalfWaveDipole(), HalfWaveDipole(2.15), Isotropic(-3.0)])
-def test_a_map_comes_back_as_it_was(tmp_path: Path, antenna: HalfWaveDipole | Isotropic) -> None:
+THETA, PHI = np.linspace(0.0, 180.0, 91), np.linspace(0.0, 360.0, 181)
+ANTENNAS = [
+    HalfWaveDipole(),
+    HalfWaveDipole(2.15, (0.0, 1.0, 1.0)),
+    Isotropic(-3.0),
+    PatternTable.of_gain(THETA, PHI, np.add.outer(-THETA / 30.0, np.cos(np.radians(PHI)))),
+]
+
+
+@pytest.mark.parametrize("antenna", ANTENNAS)
+def test_a_map_comes_back_as_it_was(tmp_path: Path, antenna: Antenna) -> None:
     first = small_map()
     first = replace(first, transmitter=replace(first.transmitter, antenna=antenna))
     first.save(tmp_path / "map.h5")
@@ -77,6 +90,56 @@ def test_plain_hdf5_shows_units_names_and_coordinates(saved: Path) -> None:
         assert file.attrs["max_reflections"] == 5
         assert file.attrs["frequency_hz"] == 5.2e9
         assert file.attrs["made_with_material_edition"] == "none"
+
+
+def full_map() -> RadioMap:
+    """A map with every layer there is."""
+    first = small_map()
+    rng = np.random.default_rng(52)
+    optional = [name for name, layer in radio_map.LAYERS.items() if not layer.required]
+    return replace(first, **{name: rng.uniform(0.0, 1.0, first.grid.shape) for name in optional})
+
+
+def test_optional_layers_come_back_and_others_stay_none(tmp_path: Path) -> None:
+    first = full_map()
+    assert list(first.layers) == list(radio_map.LAYERS)
+    first.save(tmp_path / "map.h5")
+    second = RadioMap.load(tmp_path / "map.h5")
+    for name, layer in first.layers.items():
+        np.testing.assert_array_equal(layer, second.layers[name])
+    assert small_map().delay_spread_s is None
+    assert list(small_map().layers) == list(LAYERS)
+
+
+def test_every_layer_is_a_field_of_the_map() -> None:
+    assert set(radio_map.LAYERS) <= {field.name for field in fields(RadioMap)}
+
+
+def test_xarray_opens_the_file_with_coordinates_and_units(tmp_path: Path) -> None:
+    first = full_map()
+    first.save(tmp_path / "map.h5")
+    with xr.open_dataset(tmp_path / "map.h5", engine="h5netcdf", phony_dims=None) as data:
+        assert data["delay_spread_s"].dims == ("y", "x")
+        assert data["delay_spread_s"].attrs["units"] == "s"
+        np.testing.assert_array_equal(data["x"], first.grid.x)
+        cell = data["rss_dbm"].sel(x=first.grid.x[3], y=first.grid.y[1])
+        assert float(cell) == first.rss_dbm[1, 3]
+
+
+def test_data_set_is_the_file_as_xarray_reads_it(saved: Path) -> None:
+    mine = RadioMap.load(saved).to_xarray()
+    assert float(mine["z"]) == 2.0
+    with xr.open_dataset(saved, engine="h5netcdf") as data:
+        for name in (*LAYERS, "x", "y"):
+            xr.testing.assert_equal(data[name], mine[name].drop_vars("z", errors="ignore"))
+            assert data[name].attrs == mine[name].attrs
+        assert set(data.attrs) == set(mine.attrs)
+
+
+def test_a_file_of_before_the_optional_layers_and_axes_is_read(saved: Path) -> None:
+    with h5py.File(saved, "r+") as file:
+        del file.attrs["transmit_antenna_axis"]
+    assert RadioMap.load(saved).transmitter == small_map().transmitter
 
 
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.2, 0.5, 0.9, 0.999])
