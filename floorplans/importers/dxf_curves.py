@@ -1,0 +1,188 @@
+"""DXF entities -> chains of points seen from above."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, cos, degrees, dist, floor, isfinite, radians
+from typing import TYPE_CHECKING, Any
+
+from floorplans.walls import Point
+
+if TYPE_CHECKING:
+    from ezdxf.entities.dxfgfx import DXFGraphic
+
+CHORD_STEPS = (90.0, 45.0, 22.5, 11.25, 5.625, 2.8125)
+"""Angles of chords [degrees]: concentric arcs are cut at the same angles."""
+
+_MIN_SWEEP_DEG, _MAX_SWEEP_DEG = 30.0, 120.0
+_MIN_RATIO = 0.7
+"""Ellipses down to this ratio of their axes can be the swing of a door in a stretched block."""
+_SAME = 1e-6
+"""A chain whose ends are nearer than this share of its length is closed."""
+_FAR = 1e12
+"""No drawing reaches as far, in any unit."""
+
+
+@dataclass(frozen=True)
+class Swing:
+    """A circular arc as a door's leaf draws it: hinge, and the two ends of the arc."""
+
+    hinge: Point
+    ends: tuple[Point, Point]
+
+    @property
+    def radius(self) -> float:
+        """Length of the leaf, in the drawing's unit."""
+        return dist(self.hinge, self.ends[0])
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A chain of points.
+
+    Attributes
+    ----------
+    points : tuple of (float, float)
+        The first is not repeated at the end of a closed chain.
+    closed : bool
+    filled : bool
+        Whether the drawing fills it, as a hatch or a solid does.
+    swing : Swing or None
+        For an arc that can be a door's.
+    """
+
+    points: tuple[Point, ...]
+    closed: bool = False
+    filled: bool = False
+    swing: Swing | None = None
+
+
+def curves_of(entity: DXFGraphic, tolerance: float) -> list[Curve]:
+    """Chains of points of an entity; none for what is no curve or not finite.
+
+    Parameters
+    ----------
+    entity : DXFGraphic
+    tolerance : float
+        Chords leave a curve by at most this, in the drawing's unit.
+    """
+    try:
+        curves = list(_READERS[entity.dxftype()](entity, tolerance))
+    except (ArithmeticError, AttributeError, IndexError, TypeError, ValueError):
+        return []  # a damaged entity; the layer's count still shows it
+    return [curve for curve in curves if len(curve.points) > 1 and _finite(curve)]
+
+
+def chord_step_deg(radius: float, tolerance: float) -> float:
+    """Largest angle of chords that stay within a tolerance of a circle."""
+    for step in CHORD_STEPS:
+        if radius * (1 - cos(radians(step / 2))) <= tolerance:
+            return step
+    return CHORD_STEPS[-1]
+
+
+def _finite(curve: Curve) -> bool:
+    return all(isfinite(x) and isfinite(y) and max(abs(x), abs(y)) < _FAR for x, y in curve.points)
+
+
+def _flat(point: Any) -> Point:
+    return (float(point.x), float(point.y))
+
+
+def _line(line: Any, _: float) -> Iterator[Curve]:
+    yield Curve((_flat(line.dxf.start), _flat(line.dxf.end)))
+
+
+def _arc(arc: Any, tolerance: float) -> Iterator[Curve]:
+    start, end = float(arc.dxf.start_angle), float(arc.dxf.end_angle)
+    sweep = (end - start) % 360 or 360.0
+    step = chord_step_deg(float(arc.dxf.radius), tolerance)
+    marks = range(floor(start / step) + 1, ceil((start + sweep) / step))
+    angles = [start, *(step * mark for mark in marks), start + sweep]
+    points = tuple(_flat(vertex) for vertex in arc.vertices(angles))
+    yield Curve(points, swing=_swing(_centre(arc), points[0], points[-1], sweep))
+
+
+def _centre(arc: Any) -> Point:
+    return _flat(arc.ocs().to_wcs(arc.dxf.center))
+
+
+def _swing(hinge: Point, start: Point, end: Point, sweep_deg: float) -> Swing | None:
+    turns = _MIN_SWEEP_DEG <= sweep_deg <= _MAX_SWEEP_DEG
+    return Swing(hinge, (start, end)) if turns else None
+
+
+def _circle(circle: Any, tolerance: float) -> Iterator[Curve]:
+    step = chord_step_deg(float(circle.dxf.radius), tolerance)
+    angles = [step * mark for mark in range(round(360 / step))]
+    yield Curve(tuple(_flat(vertex) for vertex in circle.vertices(angles)), closed=True)
+
+
+def _ellipse(ellipse: Any, tolerance: float) -> Iterator[Curve]:
+    points = tuple(_flat(vertex) for vertex in ellipse.flattening(tolerance))
+    sweep_deg = degrees(ellipse.dxf.end_param - ellipse.dxf.start_param) % 360
+    nearly_circle = float(ellipse.dxf.ratio) >= _MIN_RATIO
+    hinge = _flat(ellipse.dxf.center)
+    swing = _swing(hinge, points[0], points[-1], sweep_deg) if nearly_circle else None
+    yield Curve(points, swing=swing)
+
+
+def _spline(spline: Any, tolerance: float) -> Iterator[Curve]:
+    yield Curve(tuple(_flat(vertex) for vertex in spline.flattening(tolerance)))
+
+
+def _polyline(polyline: Any, tolerance: float) -> Iterator[Curve]:
+    """Read a polyline: as one chain, its bulges as chords, and a swing for each bulge."""
+    if polyline.dxftype() == "POLYLINE" and not (
+        polyline.is_2d_polyline or polyline.is_3d_polyline
+    ):
+        return
+    points: list[Point] = []
+    for part in polyline.virtual_entities():
+        for curve in curves_of(part, tolerance):
+            chain = curve.points
+            if points and dist(points[-1], chain[-1]) < dist(points[-1], chain[0]):
+                chain = chain[::-1]
+            points += chain[1:] if points else chain
+            if curve.swing is not None:
+                yield Curve(chain, swing=curve.swing)
+    if len(points) > 1:
+        length = sum(dist(a, b) for a, b in pairwise(points))
+        closed = dist(points[0], points[-1]) <= _SAME * length
+        yield Curve(tuple(points[:-1] if closed else points), closed=closed)
+
+
+def _mline(mline: Any, tolerance: float) -> Iterator[Curve]:
+    for part in mline.virtual_entities():
+        yield from curves_of(part, tolerance)
+
+
+def _hatch(hatch: Any, tolerance: float) -> Iterator[Curve]:
+    from ezdxf.path import from_hatch
+
+    for path in from_hatch(hatch):
+        points = tuple(_flat(vertex) for vertex in path.flattening(tolerance))
+        yield Curve(points, closed=True, filled=True)
+
+
+def _solid(solid: Any, _: float) -> Iterator[Curve]:
+    yield Curve(tuple(_flat(vertex) for vertex in solid.wcs_vertices()), closed=True, filled=True)
+
+
+_READERS: dict[str, Callable[[Any, float], Iterator[Curve]]] = {
+    "LINE": _line,
+    "ARC": _arc,
+    "CIRCLE": _circle,
+    "ELLIPSE": _ellipse,
+    "SPLINE": _spline,
+    "LWPOLYLINE": _polyline,
+    "POLYLINE": _polyline,
+    "MLINE": _mline,
+    "HATCH": _hatch,
+    "SOLID": _solid,
+    "TRACE": _solid,
+}
+CURVE_TYPES = tuple(_READERS)
+"""Types of entities that are read."""

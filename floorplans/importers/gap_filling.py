@@ -1,0 +1,121 @@
+"""Gaps of walls at their doors and windows, filled so that the wall goes on behind the opening."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import atan2, degrees
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely import affinity
+from shapely.geometry import Polygon, box
+from shapely.geometry.base import BaseGeometry
+
+from floorplans.importers.draft import RawOpening
+
+_BESIDE_M = 0.6
+"""How far beside an opening's middle the gap's sides are looked for [m]."""
+_FRAME_M = 0.3
+"""How far a gap may go on beyond an opening at each side [m]."""
+_STEP_M = 0.02
+_OVER_M = 0.01
+_MIN_SHARE = 0.5
+
+
+def fill_gaps(area: BaseGeometry, openings: Sequence[RawOpening]) -> tuple[Polygon, ...]:
+    """Fill the gaps in an area of wall in which openings stand.
+
+    A gap lies between two faces of wall that an opening reaches from one to the other; it is filled
+    as deep as the faces have in common. An opening of unknown direction, or that stands in a wall,
+    has no gap.
+
+    Parameters
+    ----------
+    area : shapely geometry
+        Of the walls, from above [m].
+    openings : sequence of RawOpening
+
+    Returns
+    -------
+    tuple of shapely.geometry.Polygon
+    """
+    parts = shapely.get_parts(area)
+    if not len(parts):
+        return ()
+    tree = shapely.STRtree(parts)
+    return tuple(filling for opening in openings for filling in _filling(opening, parts, tree))
+
+
+def _filling(
+    opening: RawOpening, parts: NDArray[np.object_], tree: shapely.STRtree
+) -> Iterator[Polygon]:
+    if opening.direction is None:
+        return
+    angle = atan2(opening.direction[1], opening.direction[0])
+    x, y = opening.centre
+    far_m = opening.width_m / 2 + _FRAME_M
+    frame = box(-far_m - _STEP_M, -_BESIDE_M, far_m + _STEP_M, _BESIDE_M)
+    window = affinity.translate(affinity.rotate(frame, degrees(angle), origin=(0, 0)), x, y)
+    near = [parts[i] for i in tree.query(window, predicate="intersects").tolist()]
+    if not near:
+        return
+    here = affinity.translate(shapely.intersection(shapely.union_all(near), window), -x, -y)
+    local = affinity.rotate(here, degrees(-angle), origin=(0, 0))
+    gap = _gap(local, opening.width_m)
+    if gap is not None:
+        yield affinity.translate(affinity.rotate(gap, degrees(angle), origin=(0, 0)), x, y)
+
+
+def _gap(local: BaseGeometry, width_m: float) -> Polygon | None:
+    """Gap around the origin, along x, in an area of wall; None where there is none."""
+    rows = np.arange(-_BESIDE_M + _STEP_M / 2, _BESIDE_M, _STEP_M)
+    sides = np.array([_sides(local, float(row), width_m) for row in rows])
+    bridged = np.array(np.isfinite(sides).all(axis=1))
+    run = _run_nearest_middle(bridged)
+    if run is None or run[0] == 0 or run[1] == len(rows):
+        return None
+    left, right = np.median(sides[run[0] : run[1]], axis=0)
+    low, high = rows[run[0]] - _STEP_M / 2, rows[run[1] - 1] + _STEP_M / 2
+    low, high = _exact(local, (float(left), float(right)), (float(low), float(high)))
+    return box(left - _OVER_M, low, right + _OVER_M, high)
+
+
+def _sides(local: BaseGeometry, row: float, width_m: float) -> tuple[float, float]:
+    """Where wall begins to the left and the right of x = 0 in a row; nan where not near enough."""
+    far_m = width_m / 2 + _FRAME_M
+    line = shapely.linestrings([[-far_m - _STEP_M, row], [far_m + _STEP_M, row]])
+    hits = shapely.get_parts(shapely.intersection(line, local))
+    spans = [(hit.bounds[0], hit.bounds[2]) for hit in hits if not hit.is_empty]
+    left = max((high for _, high in spans if high <= 0), default=np.nan)
+    right = min((low for low, _ in spans if low >= 0), default=np.nan)
+    blocked = any(low < 0 < high for low, high in spans)
+    if blocked or not right - left >= _MIN_SHARE * width_m:
+        return (np.nan, np.nan)
+    return (left, right)
+
+
+def _run_nearest_middle(flags: NDArray[np.bool_]) -> tuple[int, int] | None:
+    """First and last + 1 of the run of true flags that is nearest to the middle."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    runs = edges.reshape(-1, 2).tolist()
+    if not runs:
+        return None
+    middle = len(flags) / 2
+    low, high = min(runs, key=lambda run: max(run[0] - middle, middle - run[1], 0.0))
+    return (low, high)
+
+
+def _exact(
+    local: BaseGeometry, sides: tuple[float, float], rows: tuple[float, float]
+) -> tuple[float, float]:
+    """Depth of a gap to the faces' own edges, where the rows found them within a step."""
+    low, high = rows
+    for side, beyond in zip(sides, (-1, 1), strict=True):
+        x0, x1 = sorted((side + beyond * _OVER_M, side + beyond * 3 * _OVER_M))
+        face = local.intersection(box(x0, low - _STEP_M, x1, high + _STEP_M))
+        if not face.is_empty:
+            _, bottom, _, top = face.bounds
+            low = bottom if abs(bottom - low) < _STEP_M and bottom > low - _STEP_M / 2 else low
+            high = top if abs(top - high) < _STEP_M and top < high + _STEP_M / 2 else high
+    return low, high

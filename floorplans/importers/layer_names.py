@@ -1,0 +1,141 @@
+"""What layers, blocks and types are, by their names.
+
+Names are cut into words at everything but letters, and at changes from small to capital letters;
+a word decides if it begins like one of those below. The words are those of the AIA and ISO 13567
+layer lists and of common drawings in English, German, French, Spanish, Italian, Portuguese, Dutch,
+Swedish, Polish and Turkish.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Literal, TypeVar, get_args
+
+from floorplans.errors import PlanError, unknown_name
+from floorplans.materials import MATERIALS
+
+T = TypeVar("T")
+Kind = Literal["wall", "door", "window", "ignore"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+
+_WORDS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
+    ("ignore", (
+        "furn", "mobel", "moebel", "meubl", "mueble", "mobil", "text", "txt", "dim", "anno",
+        "hatch", "schraff", "defpoint", "viewport", "vport", "title", "demol", "label",
+    )),
+    ("door", (
+        "door", "tur", "tuer", "porte", "porta", "portes", "puert", "deur", "dorr", "drzwi",
+        "kapi", "gate",
+    )),
+    ("window", (
+        "window", "wind", "wdw", "wndw", "fenst", "fenet", "ventan", "finest", "janel", "raam",
+        "ramen", "fonst", "okn", "pencer",
+    )),
+    ("wall", (
+        "wall", "wand", "waend", "mur", "pared", "paret", "muur", "vagg", "scian", "duvar", "mauer",
+        "cloison", "tabiqu", "partit", "trennw", "aussenw", "innenw", "column", "cols", "stutz",
+        "stuetz", "pilar", "pilast", "kolom", "poteau",
+    )),
+    ("ignore", (
+        "sheet", "frame", "grid", "axis", "axe", "achs", "patt", "symb", "plant", "tree", "san",
+        "plumb", "fixt", "equip", "light", "elec", "hvac", "duct", "pipe", "stair", "trepp",
+        "escal", "floor", "boden", "ceil", "decke", "roof", "dach", "area", "room", "raum",
+        "space", "zone", "overhead", "ovhd", "rail", "appl", "cabinet", "casework", "logo", "clng",
+        "flor", "evtr", "lift",
+    )),
+)  # fmt: skip
+"""The first group that one of a name's words begins like."""
+
+_MATERIAL_WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("concrete", ("conc", "beton", "hormig", "calcest", "stahlb")),
+    ("brick", (
+        "brick", "mason", "masonr", "mauerw", "ziegel", "briq", "ladrill", "matton", "cmu",
+        "bakst", "tijol", "kalksand",
+    )),
+    ("plasterboard", (
+        "plaster", "gyps", "gips", "dryw", "placo", "putz", "cartong", "yeso", "gkb", "trockenb",
+    )),
+    ("glass", ("glas", "glaz", "verre", "vidri", "vetro", "curtain", "szkl")),
+    ("wood", ("wood", "timber", "holz", "bois", "mader", "legno", "hout")),
+    ("metal", ("metal", "steel", "stahl", "acier", "acero", "alumin", "acciaio", "staal")),
+)  # fmt: skip
+
+_PLAIN = str.maketrans({"ß": "ss", "ł": "l", "ı": "i", "ø": "o"})
+"""Letters that lose no accent by decomposition."""
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a name stands for: a kind, None if unknown, and a material, None if not told."""
+
+    kind: Kind | None
+    material: str | None = None
+
+
+def meaning_of(name: str, layers: Mapping[str, str] | None = None) -> Meaning:
+    """Tell what a layer is, from the user's mapping, else from its name.
+
+    Parameters
+    ----------
+    name : str
+    layers : mapping of str to str, optional
+        Name or pattern with * and ? -> KIND or KIND:MATERIAL; case does not matter.
+
+    Returns
+    -------
+    Meaning
+
+    Raises
+    ------
+    PlanError
+        When the mapping names an unknown kind or material.
+
+    Examples
+    --------
+    >>> meaning_of("A-WALL-CONC")
+    Meaning(kind='wall', material='concrete')
+    >>> meaning_of("Türen").kind, meaning_of("cotes").kind
+    ('door', None)
+    """
+    for pattern, meaning in (layers or {}).items():
+        if fnmatchcase(name.casefold(), pattern.casefold()):
+            return parse_meaning(meaning, pattern)
+    words = _words(name)
+    material = _first(words, _MATERIAL_WORDS)
+    kind: Kind | None = _first(words, _WORDS)
+    if kind is None:
+        return Meaning("wall", material) if material is not None else Meaning(None)
+    return Meaning(kind, material if kind == "wall" else None)
+
+
+def parse_meaning(text: str, name: str) -> Meaning:
+    """Read KIND or KIND:MATERIAL as a user writes it for the layer `name`."""
+    kind_text, _, material = text.partition(":")
+    kinds: dict[str, Kind] = {kind: kind for kind in KINDS}
+    kind = kinds.get(kind_text.strip())
+    if kind is None:
+        raise PlanError(unknown_name("kind of layer", kind_text, KINDS), ("layers", name), text)
+    material = material.strip() or None
+    if material is not None and material not in MATERIALS:
+        raise PlanError(unknown_name("material", material, MATERIALS), ("layers", name), text)
+    return Meaning(kind, material)
+
+
+def _words(name: str) -> list[str]:
+    """Small letters of each word of a name, accents taken off."""
+    spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+    plain = unicodedata.normalize("NFKD", spaced.translate(_PLAIN))
+    letters = "".join(c for c in plain if not unicodedata.combining(c))
+    return re.findall(r"[a-z]+", letters.casefold())
+
+
+def _first(words: list[str], lists: tuple[tuple[T, tuple[str, ...]], ...]) -> T | None:
+    """Return the first value one of whose beginnings a word has."""
+    for value, beginnings in lists:
+        if any(word.startswith(beginnings) for word in words):
+            return value
+    return None

@@ -1,0 +1,204 @@
+"""Walls drawn as two parallel lines -> the strips between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, Polygon
+
+from floorplans.walls import Interval, Point
+
+MIN_THICKNESS_M = 0.02
+_MAX_SINE = np.sin(np.radians(6.0))
+_MIN_OVERLAP_M = 0.05
+_MIN_SINGLE_M = 0.3
+"""Lines without a partner shorter than this are jambs and caps, not walls [m]."""
+_CAP_M = 0.03
+
+Segments = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Strip:
+    """The area of wall between two lines, as long as they face each other [m]."""
+
+    start: Point
+    end: Point
+    thickness_m: float
+
+    def area(self, further_m: float = 0.0) -> Polygon:
+        """Rectangle of the strip, made longer at both ends."""
+        a, b = np.array(self.start), np.array(self.end)
+        along = (b - a) / np.hypot(*(b - a))
+        across = np.array([-along[1], along[0]]) * self.thickness_m / 2
+        a, b = a - along * further_m, b + along * further_m
+        return Polygon([a + across, b + across, b - across, a - across])
+
+
+@dataclass
+class _Face:
+    """A line: start, unit direction and length, and which stretches already are a wall's side."""
+
+    start: NDArray[np.float64]
+    along: NDArray[np.float64]
+    length: float
+    used: list[Interval] = field(default_factory=list[Interval])
+
+    def free(self, low: float, high: float) -> Iterator[Interval]:
+        """Stretches of [low, high] that are not used."""
+        position = low
+        for used_low, used_high in [*sorted(self.used), (high, high)]:
+            if min(used_low, high) - position > _MIN_OVERLAP_M:
+                yield position, min(used_low, high)
+            position = max(position, used_high)
+
+
+@dataclass(frozen=True)
+class StripWalls:
+    """What lines mean as walls.
+
+    Attributes
+    ----------
+    area : tuple of shapely.geometry.Polygon
+        Strips between pairs of lines, and the corners where strips meet [m].
+    singles : (n, 2, 2) float64
+        Lines without a partner, which are walls of unknown thickness [m].
+    """
+
+    area: tuple[Polygon, ...]
+    singles: Segments
+
+
+def strips_of_lines(segments: Segments, max_thickness_m: float) -> StripWalls:
+    """Pair lines that face each other, the nearest first; each stretch has one partner.
+
+    Parameters
+    ----------
+    segments : (n, 2, 2) float64
+        Lines of walls, not closed ones around the body of a wall [m].
+    max_thickness_m : float
+        Lines farther apart are not the sides of one wall [m].
+
+    Returns
+    -------
+    StripWalls
+    """
+    steps = segments[:, 1] - segments[:, 0]
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    segments, steps, lengths = (x[lengths > 1e-6] for x in (segments, steps, lengths))
+    if not len(segments):
+        return StripWalls((), segments)
+    faces = [
+        _Face(segment[0], step / length, float(length))
+        for segment, step, length in zip(segments, steps, lengths, strict=True)
+    ]
+    strips = list(_strips(faces, segments, max_thickness_m))
+    area = [strip.area() for strip in strips]
+    return StripWalls((*area, *_corners(strips)), _singles(faces, strips))
+
+
+def _strips(faces: list[_Face], segments: Segments, max_thickness_m: float) -> Iterator[Strip]:
+    """Strips between pairs of faces, thin ones first."""
+    lines = np.array(shapely.linestrings(segments), dtype=np.object_)
+    pairs = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=max_thickness_m)
+    near = pairs[:, pairs[0] < pairs[1]].T
+    along = np.array([face.along for face in faces])
+    a, b = along[near[:, 0]], along[near[:, 1]]
+    near = near[np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) <= _MAX_SINE]
+    apart = [(_apart(faces[i], faces[j]), i, j) for i, j in near.tolist()]
+    for thickness_m, i, j in sorted(apart):
+        if MIN_THICKNESS_M <= thickness_m <= max_thickness_m:
+            yield from _between(faces[i], faces[j])
+
+
+def _facing(face: _Face, other: _Face) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Coordinates of the other face's ends along and across a face, in order along it."""
+    ends = np.array([other.start, other.start + other.along * other.length]) - face.start
+    s = ends @ face.along
+    t = face.along[0] * ends[:, 1] - face.along[1] * ends[:, 0]
+    order = np.argsort(s)
+    return s[order], t[order]
+
+
+def _apart(face: _Face, other: _Face) -> float:
+    """How far apart two faces are where they face each other; inf where they do not [m]."""
+    s, t = _facing(face, other)
+    low, high = max(s[0], 0.0), min(s[1], face.length)
+    if high - low < _MIN_OVERLAP_M:
+        return np.inf
+    sides = np.interp([low, high], s, t)
+    return float(np.abs(sides).mean()) if sides[0] * sides[1] > 0 else np.inf
+
+
+def _between(face: _Face, other: _Face) -> Iterator[Strip]:
+    """Strips where both faces are free; they are used from then on."""
+    s, t = _facing(face, other)
+    low, high = max(s[0], 0.0), min(s[1], face.length)
+    for begin, end in list(face.free(low, high)):
+        back, _ = _facing(other, _part(face, begin, end))
+        for back_low, back_high in list(other.free(max(back[0], 0.0), min(back[1], other.length))):
+            ahead, _ = _facing(face, _part(other, back_low, back_high))
+            stretch = (max(float(ahead[0]), begin), min(float(ahead[1]), end))
+            if stretch[1] - stretch[0] <= _MIN_OVERLAP_M:
+                continue
+            face.used.append(stretch)
+            other.used.append((back_low, back_high))
+            yield _strip(face, stretch, np.interp(stretch, s, t))
+
+
+def _part(face: _Face, low: float, high: float) -> _Face:
+    return _Face(face.start + face.along * low, face.along, high - low)
+
+
+def _strip(face: _Face, stretch: Interval, sides: NDArray[np.float64]) -> Strip:
+    across = np.array([-face.along[1], face.along[0]])
+    ends = [
+        face.start + face.along * s + across * side / 2
+        for s, side in zip(stretch, sides, strict=True)
+    ]
+    (x0, y0), (x1, y1) = ends
+    start, end = (float(x0), float(y0)), (float(x1), float(y1))
+    return Strip(start, end, float(np.abs(sides).mean()))
+
+
+def _corners(strips: list[Strip]) -> Iterator[Polygon]:
+    """What is missing between strips that end at each other: corners, Ts and crossings."""
+    areas = np.array([strip.area() for strip in strips], dtype=np.object_)
+    if not areas.size:
+        return
+    thickest_m = max(strip.thickness_m for strip in strips)
+    near = shapely.STRtree(areas).query(areas, predicate="dwithin", distance=thickest_m)
+    for i, j in near[:, near[0] < near[1]].T.tolist():
+        reach_m = 1.05 * max(strips[i].thickness_m, strips[j].thickness_m) + _CAP_M
+        common = strips[i].area(reach_m).intersection(strips[j].area(reach_m))
+        touching = all(common.distance(areas[k]) < 2 * _CAP_M for k in (i, j))
+        if (
+            isinstance(common, Polygon)
+            and common.area > 0
+            and touching
+            and _bent(strips[i], strips[j])
+        ):
+            yield common
+
+
+def _bent(a: Strip, b: Strip) -> bool:
+    (ux, uy), (vx, vy) = (np.subtract(s.end, s.start) for s in (a, b))
+    return bool(abs(ux * vy - uy * vx) > _MAX_SINE * np.hypot(ux, uy) * np.hypot(vx, vy))
+
+
+def _singles(faces: list[_Face], strips: list[Strip]) -> Segments:
+    """Stretches without a partner that are no part of a wall already, (n, 2, 2)."""
+    walls = shapely.union_all([s.area(s.thickness_m + _CAP_M).buffer(_CAP_M) for s in strips])
+    found: list[list[tuple[float, float]]] = []
+    for face in faces:
+        for low, high in face.free(0.0, face.length):
+            part = _part(face, low, high)
+            line = LineString([part.start, part.start + part.along * part.length])
+            for rest in shapely.get_parts(line.difference(walls)):
+                if rest.length >= min(_MIN_SINGLE_M, face.length - _CAP_M) and rest.length > _CAP_M:
+                    found.append([(float(x), float(y)) for x, y in rest.coords])
+    return np.array(found, dtype=np.float64).reshape(-1, 2, 2)
