@@ -1,7 +1,8 @@
 """What a GeoJSON feature is: wall, door, window, room, outline or nothing of ours; and its level.
 
 Files name the kind of a feature in many ways. Known are the feature types of IMDF, the tags of
-OpenStreetMap's simple indoor tagging, and a word for it under one of `KIND_KEYS`.
+OpenStreetMap's simple indoor tagging, and a word for it under one of `KIND_KEYS`, in the languages
+that `layer_names` knows.
 """
 
 from __future__ import annotations
@@ -9,11 +10,14 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from itertools import product
 from math import isfinite
 from typing import Any, Literal, cast, get_args
 
 from floorplans.errors import PlanError, unknown_name
 from floorplans.importers.draft import ImportOptions
+from floorplans.importers.layer_names import meaning_of
 from floorplans.materials import MATERIALS
 
 Kind = Literal["wall", "door", "window", "passage", "room", "outline", "level", "ignore"]
@@ -74,16 +78,16 @@ def classify(feature: Json, options: ImportOptions) -> FeatureClass:
     words = [text for key in KIND_KEYS for text in _texts(properties.get(key))]
     words = [*_texts(feature.get("feature_type")), *words, *_osm_words(properties)]
     label = words[0] if words else "(no kind)"
-    chosen = {name.lower(): target for name, target in options.layers.items()}
-    for word in words:
-        if word.lower() in chosen:
-            kind, material = parse_target(chosen[word.lower()])
+    for word, (pattern, target) in product(words, options.layers.items()):
+        if fnmatchcase(word.casefold(), pattern.casefold()):
+            kind, material = parse_target(target)
             return FeatureClass(kind, word, material)
     material = _material(properties)
     if words and words[0] in ("unit", "fixture"):
         return _imdf(words[0], str(properties.get("category", "")), material)
     for word in words:
         if kind := _kind_of(word):
+            material = material or meaning_of(word).material
             return FeatureClass(kind, word, material, word.lower() in OPEN_UNITS)
     return FeatureClass(None, label)
 
@@ -145,7 +149,10 @@ def _osm_words(properties: Json) -> list[str]:
 
 def _kind_of(word: str) -> Kind | None:
     parts = re.findall(r"[a-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower())
-    return WORDS.get(parts[-1]) if parts else None
+    if not parts or parts[-1] in WORDS:
+        return WORDS[parts[-1]] if parts else None
+    kind = meaning_of(word).kind
+    return None if kind == "ignore" else kind
 
 
 def _texts(value: object) -> list[str]:

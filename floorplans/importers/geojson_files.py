@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -131,9 +132,9 @@ def _archive_texts(path: Path) -> Iterator[tuple[str, bytes]]:
             for info in members:
                 with archive.open(info) as file:
                     yield info.filename, file.read(info.file_size)
-    except (BadZipFile, NotImplementedError, RuntimeError, EOFError, ValueError, OSError) as error:
-        if isinstance(error, PlanError):
-            raise
+    except PlanError:
+        raise
+    except (BadZipFile, zlib.error, RuntimeError, EOFError, ValueError, OSError) as error:
         raise PlanError(f"the archive cannot be read: {error}", origin=str(path)) from error
 
 

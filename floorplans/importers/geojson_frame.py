@@ -8,14 +8,13 @@ from typing import Any, cast
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.errors import ShapelyError
 from shapely.geometry import shape
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
 from floorplans.georeference import GeoOrigin
-
-UNITS_M: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
-"""Names of units -> length [m]."""
+from floorplans.importers.units import check_size, unit_length
 
 MAX_SIZE_M = 3000.0
 """The largest building [m]."""
@@ -38,17 +37,11 @@ def geometry_of(feature: Mapping[str, Any], index: int) -> BaseGeometry:
     if geometry is None:
         return shapely.GeometryCollection()
     try:
-        made = shapely.force_2d(shape(cast("dict[str, Any]", geometry)))
+        with np.errstate(invalid="ignore"):
+            made = shapely.force_2d(shape(cast("dict[str, Any]", geometry)))
     except RecursionError as error:
         raise PlanError("collections are nested too deep", place) from error
-    except (
-        KeyError,
-        TypeError,
-        ValueError,
-        AttributeError,
-        IndexError,
-        shapely.GEOSException,
-    ) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError, ShapelyError) as error:
         raise PlanError(f"not a geometry of GeoJSON ({error})", place) from error
     if not np.isfinite(shapely.get_coordinates(made)).all():
         raise PlanError("a coordinate is not a finite number", place)
@@ -68,7 +61,7 @@ def to_metres(
         Name of their reference system, "" for none on the Earth, None where the file does not say:
         then they are degrees, or metres where they cannot be.
     unit : str or None
-        One of `UNITS_M` for coordinates that are lengths in a plane; it goes before `crs`.
+        One of `units.UNITS`, for coordinates that are lengths in a plane; it goes before `crs`.
 
     Returns
     -------
@@ -80,10 +73,8 @@ def to_metres(
         raise PlanError("no feature has coordinates", ("features",))
     if n_points > MAX_POINTS:
         raise PlanError(f"{n_points} points, at most {MAX_POINTS} are read; cut out one building")
-    if unit is not None and unit not in UNITS_M:
-        raise PlanError(f"unknown unit; known are {', '.join(UNITS_M)}", ("unit",), unit)
     if unit is not None or crs == "" or (crs is None and not _may_be_degrees(geometries)):
-        return _scaled(geometries, UNITS_M[unit or "m"], unit), None
+        return _scaled(geometries, unit or "m"), None
     degrees = geometries if crs is None else _degrees(geometries, crs)
     _check_degrees(degrees)
     x_min, y_min, _, _ = shapely.total_bounds(list(degrees))
@@ -91,22 +82,10 @@ def to_metres(
     return [shapely.transform(geometry, origin.to_plan) for geometry in degrees], origin
 
 
-def _scaled(
-    geometries: Sequence[BaseGeometry], unit_m: float, unit: str | None
-) -> list[BaseGeometry]:
-    lengths = _size(geometries) * unit_m
-    if lengths.max() > MAX_SIZE_M:
-        better = [name for name, m in UNITS_M.items() if lengths.max() / unit_m * m <= MAX_SIZE_M]
-        hint = f"; if coordinates are in {better[0]}, say --unit {better[0]}" if better else ""
-        raise PlanError(
-            f"the building is {_shown(lengths)}, taken as {unit or 'm'}{hint}", ("unit",)
-        )
-    if not lengths.max() >= 1.0:
-        raise PlanError(
-            f"the building is {lengths.max():.3g} m long; say in which unit coordinates are: "
-            f"{', '.join(UNITS_M)}",
-            ("unit",),
-        )
+def _scaled(geometries: Sequence[BaseGeometry], unit: str) -> list[BaseGeometry]:
+    unit_m = unit_length(unit)
+    width, depth = _size(geometries).tolist()
+    check_size((width, depth), unit, "coordinates are taken")
     return [shapely.transform(geometry, lambda points: points * unit_m) for geometry in geometries]
 
 

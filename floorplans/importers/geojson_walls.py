@@ -101,7 +101,7 @@ def _area_walls(
         if _fills_a_gap(polygon)
     ]
     polygons = [polygon for _, polygon in areas]
-    walls = walls_of_area(shapely.union_all([*polygons, *fillings]), tolerance_m)
+    walls = walls_of_area(shapely.union_all(polygons), tolerance_m, shapely.union_all(fillings))
     tree = shapely.STRtree(polygons)
     return [_like(wall, areas[int(tree.nearest(_middle(wall)))][0]) for wall in walls]
 

@@ -12,7 +12,7 @@ to what stands there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -38,7 +38,9 @@ _REACH = 2.0  # times the thickest wall is how far an end may go on to meet anot
 Vectors = NDArray[np.float64]
 
 
-def walls_of_area(area: BaseGeometry, tolerance_m: float) -> list[RawWall]:
+def walls_of_area(
+    area: BaseGeometry, tolerance_m: float, fillings: BaseGeometry | None = None
+) -> list[RawWall]:
     """Return the walls that an area of wall consists of.
 
     Parameters
@@ -47,13 +49,16 @@ def walls_of_area(area: BaseGeometry, tolerance_m: float) -> list[RawWall]:
         Polygons [m]; those that touch or nearly touch are one.
     tolerance_m : float
         Gaps up to this are closed, and corners nearer than this to a side are cut off [m].
+    fillings : shapely geometry, optional
+        Areas of doors and windows [m]: they go on the line of their wall and take its thickness.
 
     Returns
     -------
     list of RawWall
         With thickness; walls of blocks last.
     """
-    solid = _polygons(_closed(area, tolerance_m).simplify(tolerance_m / 2))
+    openings = shapely.Polygon() if fillings is None else fillings
+    solid = _polygons(_closed(area.union(openings), tolerance_m).simplify(tolerance_m / 2))
     whole = shapely.union_all(solid)
     blocks = _blocks(whole)
     thin = [
@@ -61,7 +66,8 @@ def walls_of_area(area: BaseGeometry, tolerance_m: float) -> list[RawWall]:
         for part in _polygons(whole.difference(shapely.union_all(blocks).buffer(1e-6)))
         if part.area > tolerance_m**2
     ]
-    axes = on_common_lines([axis for part in thin for axis in _axes(part)], whole)
+    found = [_marked(axis, openings) for part in thin for axis in _axes(part)]
+    axes = on_common_lines(found, whole)
     rings = [side for block in blocks for side in _ring_walls(block)]
     reach = [RawWall(axis.start, axis.end, axis.thickness_m) for axis in axes]
     return [*_joined(reach, rings, whole), *rings]
@@ -143,6 +149,12 @@ def _axes(part: Polygon) -> list[Axis]:
     shapely.prepare(inside)
     found = [_axis_between(edges, int(i), int(j)) for i, j in near[opposed]]
     return [a for a in found if a is not None and inside.covers(LineString([a.start, a.end]))]
+
+
+def _marked(axis: Axis, fillings: BaseGeometry) -> Axis:
+    """Mark an axis whose middle lies in a filling."""
+    middle = LineString([axis.start, axis.end]).centroid
+    return replace(axis, is_filling=bool(fillings.covers(middle)))
 
 
 def _axis_between(edges: _Edges, i: int, j: int) -> Axis | None:

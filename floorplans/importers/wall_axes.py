@@ -22,11 +22,15 @@ _SHORT = 2.0  # times its thickness, a stretch takes on the thickness of its nei
 
 @dataclass(frozen=True)
 class Axis:
-    """A straight centre line [m] with the thickness of its wall [m]."""
+    """A straight centre line [m] with the thickness of its wall [m].
+
+    `is_filling` tells that it is a door's or window's, which may be thinner than its wall.
+    """
 
     start: Point
     end: Point
     thickness_m: float
+    is_filling: bool = False
 
     @property
     def vector(self) -> NDArray[np.float64]:
@@ -46,6 +50,7 @@ class _Stretch:
     low: float
     high: float
     thickness_m: float
+    is_filling: bool
 
     @property
     def length_m(self) -> float:
@@ -93,12 +98,12 @@ def _on_line_of(first: Axis, other: Axis) -> bool:
 
 def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
     """Put a group on its line of least squares, in the direction of its longest axis."""
-    lengths = np.array([axis.length_m for axis in group])
+    areas = np.array([axis.length_m * axis.thickness_m for axis in group])
     towards = np.array([axis.vector * np.sign(axis.vector @ group[0].vector) for axis in group])
     along = towards.sum(axis=0) / np.hypot(*towards.sum(axis=0))
     across = np.array([-along[1], along[0]])
     ends = np.array([[axis.start, axis.end] for axis in group])
-    offset = float(np.average((ends @ across).mean(axis=1), weights=lengths))
+    offset = float(np.average((ends @ across).mean(axis=1), weights=areas))
 
     def point(s: float) -> Point:
         x, y = along * s + across * offset
@@ -109,7 +114,7 @@ def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
 
     s = np.sort(ends @ along, axis=1)
     stretches = [
-        _Stretch(float(low), float(high), axis.thickness_m)
+        _Stretch(float(low), float(high), axis.thickness_m, axis.is_filling)
         for (low, high), axis in sorted(
             zip(s.tolist(), group, strict=True), key=lambda pair: pair[0]
         )
@@ -142,7 +147,7 @@ def _covers(longer: Axis, axis: Axis) -> bool:
 
 
 def _merged(stretches: list[_Stretch], is_solid: Callable[[float, float], bool]) -> list[_Stretch]:
-    """Join neighbours of like thickness, and let those of unlike thickness touch."""
+    """Join neighbours of like thickness, fillings with any; let the others touch."""
     done = stretches[:1]
     for following in stretches[1:]:
         last = done[-1]
@@ -151,8 +156,8 @@ def _merged(stretches: list[_Stretch], is_solid: Callable[[float, float], bool])
         if not is_solid(last.high, following.low):
             done.append(following)
         elif _alike(last, following):
-            thicker = max(last, following, key=lambda stretch: stretch.length_m)
-            done[-1] = _Stretch(last.low, following.high, thicker.thickness_m)
+            like = max(last, following, key=lambda part: (not part.is_filling, part.length_m))
+            done[-1] = replace(like, low=last.low, high=following.high)
         else:
             between = (last.high + following.low) / 2
             done[-1] = replace(last, high=between)
@@ -163,4 +168,4 @@ def _merged(stretches: list[_Stretch], is_solid: Callable[[float, float], bool])
 def _alike(a: _Stretch, b: _Stretch) -> bool:
     short = any(stretch.length_m < _SHORT * stretch.thickness_m for stretch in (a, b))
     low, high = sorted((a.thickness_m, b.thickness_m))
-    return short or high <= _LIKE * low
+    return short or a.is_filling or b.is_filling or high <= _LIKE * low

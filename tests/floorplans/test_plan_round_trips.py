@@ -16,12 +16,10 @@ from floorplans.importers import ImportOptions, import_plan
 
 ORIGIN = GeoOrigin(-2.9783, 56.4601, 12.0)
 
-origins = st.builds(
-    GeoOrigin, st.floats(-180, 180), st.floats(-89, 89), st.floats(-360, 360)
-)
+origins = st.builds(GeoOrigin, st.floats(-180, 180), st.floats(-89, 89), st.floats(-360, 360))
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(plan=plans(), origin=st.none() | origins)
 def test_text_and_geojson_read_back_exactly(plan: FloorPlan, origin: GeoOrigin | None) -> None:
     plan = replace(plan, origin=origin)
