@@ -31,17 +31,17 @@ def check_plan(plan: UncheckedPlan) -> None:
 
 
 def faults(plan: UncheckedPlan) -> Iterator[PlanError]:
-    """Yield everything that makes a plan unusable.
-
-    Where numbers or names of the plan are wrong, only those are told: what they make of the
-    building has no meaning.
-    """
+    """Yield what makes a plan unusable: wrong numbers and names, or else a wrong building."""
     wrong_numbers = False
-    for fault in _number_faults(plan):
+    for fault in number_faults(plan):
         wrong_numbers = True
         yield fault
-    if wrong_numbers:
-        return
+    if not wrong_numbers:
+        yield from building_faults(plan)
+
+
+def building_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
+    """Yield what is wrong about a building whose numbers are in order."""
     yield from _walls_outside(plan)
     yield from _double_walls(plan.walls)
     yield from _open_edges(plan)
@@ -49,7 +49,8 @@ def faults(plan: UncheckedPlan) -> Iterator[PlanError]:
     yield from _caught(lambda: _check_start(plan))
 
 
-def _number_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
+def number_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
+    """Yield numbers and names that are wrong by themselves."""
     yield from _caught(lambda: _check_name(plan.name))
     yield from _caught(lambda: check_materials(plan.materials, plan.material_edition))
     yield from _caught(lambda: _check_slabs(plan))

@@ -1,5 +1,7 @@
 """TOML <-> FloorPlan: the file format that docs/plan_format.md describes."""
 
+from __future__ import annotations
+
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -46,6 +48,11 @@ class Unchecked:
 
     plan: UncheckedPlan
     piece_counts: tuple[int, ...]
+
+    @classmethod
+    def of(cls, plan: UncheckedPlan) -> Unchecked:
+        """Number the walls of a plan that is in no file."""
+        return cls(plan, (1,) * len(plan.walls))
 
     def place_in_file(self, place: Place) -> Place:
         """Turn the index of a straight wall into that of the file's polyline it is a piece of."""

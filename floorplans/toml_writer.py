@@ -14,12 +14,12 @@ from floorplans.toml_values import toml_text as _text
 from floorplans.walls import Opening, Wall
 
 if TYPE_CHECKING:
-    from floorplans.plan import FloorPlan
+    from floorplans.plan import UncheckedPlan
 
 FORMAT_VERSION = 1
 
 
-def dumps(plan: FloorPlan) -> str:
+def dumps(plan: UncheckedPlan) -> str:
     """Write a plan as TOML text; `floorplans.loads` gives an equal plan back.
 
     Equal plans give equal texts: keys come in a fixed order, values that are the format's defaults
@@ -30,7 +30,7 @@ def dumps(plan: FloorPlan) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
-def _top_level(plan: FloorPlan) -> Iterator[str]:
+def _top_level(plan: UncheckedPlan) -> Iterator[str]:
     yield f"name = {_text(plan.name)}"
     yield f"format = {FORMAT_VERSION}"
     yield f"height_m = {_number(plan.height_m)}"

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import trimesh
@@ -43,6 +44,7 @@ CAMERA_PITCH_DEG = -50.0
 FIELD_OF_VIEW_DEG = 45.0
 
 _TUBE_SIDES = 5
+_FONT = "font:13px/1.5 sans-serif;pointer-events:none"
 _OLD_TITLE = "<title>trimesh: threejs viewer</title>"
 _PAGE_CHANGES = (
     (
@@ -162,13 +164,44 @@ def add_points(
     add_triangles(scene, name, (centres + ball).reshape(-1, 3, 3), colour)
 
 
-def scene_html(scene: trimesh.Scene, title: str) -> str:
+class ColourBar(NamedTuple):
+    """What colours of lines mean: from one end of a bar to the other.
+
+    Attributes
+    ----------
+    colours : sequence of colours of matplotlib
+        At even steps from `low` to `high`.
+    low, high : str
+        Written at the ends of the bar.
+    label : str
+        Written above it.
+    """
+
+    colours: Sequence[ColorType]
+    low: str
+    high: str
+    label: str
+
+    def html(self) -> str:
+        """Bar and texts in the lower left corner of a page."""
+        rgb = [f"rgb({r:.0f},{g:.0f},{b:.0f})" for r, g, b, _ in 255 * to_rgba_array(self.colours)]
+        bar = f"height:12px;background:linear-gradient(to right,{','.join(rgb)})"
+        ends = f"<span>{escape(self.low)}</span><span>{escape(self.high)}</span>"
+        return (
+            f'<div id="colour-bar" style="position:absolute;left:12px;bottom:14px;width:240px;'
+            f'{_FONT}">{escape(self.label)}<div style="{bar}"></div>'
+            f'<div style="display:flex;justify-content:space-between">{ends}</div></div>'
+        )
+
+
+def scene_html(scene: trimesh.Scene, title: str, bar: ColourBar | None = None) -> str:
     """Return a page that shows the scene: drag to turn, wheel to zoom, right button to move."""
     page = scene_to_html(scene)
     for old, new in _PAGE_CHANGES:
         page = page.replace(old, new, 1)
     page = page.replace(_OLD_TITLE, f"<title>{escape(title)}</title>", 1)
-    return page.replace("<body>", f"<body>{_key(scene, title)}", 1)
+    overlay = _key(scene, title) + ("" if bar is None else bar.html())
+    return page.replace("<body>", f"<body>{overlay}", 1)
 
 
 def _key(scene: trimesh.Scene, title: str) -> str:
@@ -180,11 +213,13 @@ def _key(scene: trimesh.Scene, title: str) -> str:
             red, green, blue, _ = (int(part) for part in np.array(material.baseColorFactor))
             patch = f'<span style="color:rgb({red},{green},{blue})">&#9632;</span>'
             rows.append(f"{patch} {escape(name.removeprefix('walls:').replace('_', ' '))}")
-    style = "position:absolute;left:12px;top:10px;font:13px/1.5 sans-serif;pointer-events:none"
+    style = f"position:absolute;left:12px;top:10px;{_FONT}"
     return f'<div style="{style}">{"<br>".join(rows)}</div>'
 
 
-def save_scene(scene: trimesh.Scene, path: str | Path, title: str = "rssnav") -> None:
+def save_scene(
+    scene: trimesh.Scene, path: str | Path, title: str = "rssnav", bar: ColourBar | None = None
+) -> None:
     """Write a scene to a file.
 
     Parameters
@@ -194,6 +229,8 @@ def save_scene(scene: trimesh.Scene, path: str | Path, title: str = "rssnav") ->
         Its suffix names the format: .glb or .html.
     title : str
         Of the page.
+    bar : ColourBar, optional
+        What the colours of lines mean, for the page.
 
     Raises
     ------
@@ -204,7 +241,7 @@ def save_scene(scene: trimesh.Scene, path: str | Path, title: str = "rssnav") ->
     if path.suffix.lower() == ".glb":
         path.write_bytes(export_glb(scene))
     elif path.suffix.lower() == ".html":
-        path.write_text(scene_html(scene, title), encoding="utf-8", newline="\n")
+        path.write_text(scene_html(scene, title, bar), encoding="utf-8", newline="\n")
     else:
         raise ValueError(f"{path}: expected a name that ends in .glb or .html")
 

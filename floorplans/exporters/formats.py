@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -23,10 +24,13 @@ class ExportOptions:
     slice_height_m : float or None
         Height above the floor at which an occupancy grid looks at the walls [m]; None is 1 m, or
         half the storey's height where that is less.
+    frequency_hz : float
+        At which a plan's own dielectrics are evaluated for programs that want constants [Hz].
     """
 
     resolution_m: float = 0.05
     slice_height_m: float | None = None
+    frequency_hz: float = 2.4e9
 
 
 Files = Mapping[str, bytes]
@@ -66,6 +70,11 @@ FORMATS = (
     Format("geojson", "GeoJSON", (".geojson", ".json"), "geojson", "render_geojson"),
     Format("dxf", "DXF drawing", (".dxf",), "dxf", "render_dxf"),
     Format("ros", "ROS map_server map", (".yaml", ".pgm"), "ros_map", "render_ros_map"),
+    Format("glb", "glTF scene", (".glb",), "mesh", "render_glb"),
+    Format("ply", "PLY mesh", (".ply",), "mesh", "render_ply"),
+    Format("stl", "STL mesh", (".stl",), "mesh", "render_stl"),
+    Format("obj", "OBJ mesh", (".obj",), "mesh", "render_obj"),
+    Format("sionna", "Mitsuba scene for Sionna RT", (".xml",), "sionna", "render_sionna"),
 )
 """All formats a plan can be written as."""
 
@@ -135,5 +144,6 @@ def _write_all(files: Mapping[Path, bytes]) -> tuple[Path, ...]:
         ) from error
     finally:
         for part in beside.values():
-            part.unlink(missing_ok=True)
+            with suppress(OSError):  # the folder may be none
+                part.unlink(missing_ok=True)
     return tuple(files)

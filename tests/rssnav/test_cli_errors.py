@@ -177,7 +177,8 @@ def test_map_does_not_replace_what_is_no_map(made, tmp_path) -> None:
 def test_folder_that_cannot_be_written(made, tmp_path) -> None:
     (tmp_path / "file").write_text("")
     line = fault("plan", "export", made[0], "-o", tmp_path / "file" / "room.glb")
-    assert line == f"rssnav: {tmp_path / 'file'}: File exists"
+    target = tmp_path / "file" / "room.glb"
+    assert line == f"rssnav: {target}: the file cannot be written: File exists"
 
 
 def test_damaged_training_result_is_not_replaced(made, tmp_path) -> None:

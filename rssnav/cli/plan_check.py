@@ -1,0 +1,193 @@
+"""``rssnav plan check``: everything wrong or doubtful about a plan, and what is safe to mend."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from floorplans import FloorPlan, PlanError
+from floorplans.checks import faults, number_faults
+from floorplans.inspection import Finding, inspect
+from floorplans.mending import Mended, mend
+from floorplans.repair import Change
+from floorplans.toml_format import Unchecked, builtin_names, loads_unchecked, read_text
+from rssnav.cli.console import note, print_json, print_table
+from rssnav.cli.options import Json, Plan, check_suffix, examples
+from rssnav.cli.plan_facts import facts_of, print_facts
+from rssnav.files import whole_file
+from rssnav.maps import scene_of
+from rssnav.reachability import Reach, reaches, unreached
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the command."""
+    parent.command(
+        epilog=examples(
+            "rssnav plan check flat",
+            "rssnav plan check scenario1 --json",
+            "rssnav plan check my.toml --fix",
+        )
+    )(check)
+
+
+def check(
+    plan: Plan,
+    fix: Annotated[
+        bool,
+        typer.Option(
+            "--fix",
+            help="Mend what is safe first: walls that almost meet, walls drawn twice.",
+        ),
+    ] = False,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="Where --fix writes the mended plan.",
+            show_default="PLAN itself; what it was stays beside it as PLAN.bak",
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Check a plan: the file, the walls, the rooms, and whether the source can be reached.
+
+    Tells everything found, with coordinates. Warnings are for you to judge; at an error it ends
+    with 1.
+    """
+    if output is not None and not fix:
+        raise typer.BadParameter("only --fix writes a file.", param_hint="--output")
+    check_suffix(output, (".toml",), "--output")
+    text, origin = read_text(plan)
+    file = loads_unchecked(text, origin=origin)
+    changes: tuple[Change, ...] = ()
+    if fix:
+        if plan in builtin_names():
+            raise typer.BadParameter("a built-in plan cannot be mended.", param_hint="--fix")
+        if any(number_faults(file.plan)):
+            _fail(file, origin)
+        mended = mend(file.plan)
+        changes = mended.changes
+        _write(mended, text, Path(plan), output)
+        if changes:
+            file, plan = Unchecked.of(mended.plan), str(output or plan)
+    _report(file, plan, changes, as_json)
+
+
+def _write(mended: Mended, old_text: str, path: Path, output: Path | None) -> None:
+    """Write a mended plan, keep the old one beside it where it is replaced, and say so."""
+    if not mended.changes:
+        note("nothing that is safe to mend")
+        return
+    target = output or path
+    if target == path:
+        with whole_file(path.with_name(path.name + ".bak")) as beside:
+            beside.write_text(old_text, encoding="utf-8", newline="\n")
+    with whole_file(target) as beside:
+        beside.write_text(mended.toml(), encoding="utf-8", newline="\n")
+    for change in mended.changes:
+        note(f"mended {change}")
+    kept = f"; what it was is in {path.name}.bak" if target == path else ""
+    note(f"wrote {target}{kept}")
+
+
+def _report(file: Unchecked, plan: str, changes: Sequence[Change], as_json: bool) -> None:
+    findings = list(inspect(file))
+    errors = [finding for finding in findings if finding.severity == "error"]
+    flights: tuple[Reach, ...] = ()
+    facts: dict[str, Any] = {"plan": plan}
+    if not errors:
+        checked = FloorPlan.of(file.plan)
+        scene_of(checked)
+        flights = reaches(checked)
+        findings += [finding for reach in flights if (finding := unreached(reach)) is not None]
+        facts |= facts_of(checked)
+    if as_json:
+        told = {
+            "flights": [_row(reach) for reach in flights],
+            "findings": [asdict(finding) for finding in findings],
+            "changes": [asdict(change) for change in changes],
+        }
+        print_json(facts | told)
+    elif errors:
+        if len(findings) > 1:
+            _print_findings(findings)
+    else:
+        _print_flights(FloorPlan.of(file.plan), flights, findings)
+        print(f"\n{plan} is in order{_but(len(findings))}")
+    if errors:
+        _fail(file, plan)
+
+
+def _fail(file: Unchecked, origin: str) -> NoReturn:
+    """Raise the first fault, as reading the plan for any other purpose does."""
+    first = next(faults(file.plan))
+    place = file.place_in_file(first.place)
+    raise PlanError(first.problem, place, first.value, origin, first.at)
+
+
+def _but(n_warnings: int) -> str:
+    if not n_warnings:
+        return ""
+    return f", but see {n_warnings} warning{'s' if n_warnings > 1 else ''} above"
+
+
+def _row(reach: Reach) -> dict[str, Any]:
+    return {
+        "speed": reach.speed,
+        "steps": reach.steps,
+        "length_m": reach.length_m,
+        "cells": reach.n_cells,
+        "missed_cells_m": reach.missed,
+    }
+
+
+def _print_flights(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence[Finding]) -> None:
+    print_facts(plan)
+    print("\nshortest flight from the start to the source")
+    print_table(
+        (">speed", ">steps", ">length", ""),
+        [
+            (f.speed, f.steps, f"{f.length_m:.2f} m", "")
+            if f.steps is not None
+            else (f.speed, "-", "-", "the source cannot be reached at this speed")
+            for f in flights
+        ],
+    )
+    if findings:
+        print()
+        _print_findings(findings)
+
+
+def _print_findings(findings: Sequence[Finding]) -> None:
+    """Print a table on a terminal, a line a finding elsewhere."""
+    console = Console()
+    if not console.is_terminal:
+        for f in findings:
+            print(f"{f.severity}  {_where(f)}  {_what(f)}")
+        return
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for column in ("", "where", "what"):
+        table.add_column(column, no_wrap=column != "what")
+    for f in findings:
+        colour = "red" if f.severity == "error" else "yellow"
+        table.add_row(Text(f.severity, style=colour), Text(_where(f)), Text(f"{f.kind}: {f.text}"))
+    console.print(table)
+
+
+def _what(finding: Finding) -> str:
+    """Text of a finding; that of an error begins with its place in the file already."""
+    return finding.text if finding.severity == "error" else f"{finding.kind}: {finding.text}"
+
+
+def _where(finding: Finding) -> str:
+    if finding.at is None:
+        return "-"
+    return f"({finding.at[0]:.3f}, {finding.at[1]:.3f})"

@@ -1,0 +1,57 @@
+"""What a plan is, in a few lines or as JSON."""
+
+from typing import Any
+
+from floorplans import FloorPlan
+from rssnav.cli.console import print_pairs
+
+
+def facts_of(plan: FloorPlan) -> dict[str, Any]:
+    """Tell what a plan is, for programs."""
+    return {
+        "title": plan.name,
+        "bounds_m": plan.bounds,
+        "height_m": plan.height_m,
+        "area_m2": plan.outline.area,
+        "walls": len(plan.walls),
+        "openings": count_openings(plan),
+        "materials": _materials(plan),
+        "source_m": plan.source,
+        "start_m": plan.start,
+        "sha256": plan.sha256,
+    }
+
+
+def print_facts(plan: FloorPlan) -> None:
+    """Print what a plan is, a line a property."""
+    print_pairs(
+        [
+            ("plan", plan.name),
+            ("size", f"{size_text(plan)}, {plan.height_m:g} m high, {plan.outline.area:g} m²"),
+            ("walls", f"{len(plan.walls)} straight pieces with {count_openings(plan)} openings"),
+            ("materials", ", ".join(_materials(plan))),
+            ("source", f"{point_text(plan.source)} m"),
+            ("start", f"{point_text(plan.start)} m"),
+        ]
+    )
+
+
+def _materials(plan: FloorPlan) -> tuple[str, ...]:
+    """Names of all materials of a plan, each once."""
+    return tuple(dict.fromkeys(sheet.name for sheet in plan.to_mesh().materials))
+
+
+def count_openings(plan: FloorPlan) -> int:
+    """Count the openings of all walls."""
+    return sum(len(wall.openings) for wall in plan.walls)
+
+
+def size_text(plan: FloorPlan) -> str:
+    """Write the extent along x and y."""
+    x_min, y_min, x_max, y_max = plan.bounds
+    return f"{x_max - x_min:g} x {y_max - y_min:g} m"
+
+
+def point_text(point: tuple[float, ...]) -> str:
+    """Write a point [m] without needless digits."""
+    return f"({', '.join(f'{c:g}' for c in point)})"

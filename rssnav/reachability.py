@@ -1,0 +1,124 @@
+"""How far a flight from a plan's start gets at each speed, which depends on the walls alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from floorplans import FloorPlan
+from floorplans.inspection import Finding
+from raytrace import Grid, RadioMap, TraceConfig, Transmitter
+from rssnav.maps import CELL_SIZE_M, HEIGHT_M
+from rssnav.planning import shortest_path
+from rssnav.world import GOAL_DISTANCE_M, GridWorld, WorldError
+
+SPEEDS = (1, 2, 4)
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What a flight gets to at one speed.
+
+    Attributes
+    ----------
+    speed : int
+        Cells along an axis in a step.
+    steps : int or None
+        Fewest from the start to the source; None where the source cannot be reached.
+    length_m : float or None
+        Of that flight [m].
+    missed : (n, 2) float64
+        Centres (x, y) [m] of the cells that steps of this length could land on, if walls did not
+        keep the flight from them; empty where the source cannot be reached.
+    n_cells : int
+        How many cells steps of this length could land on.
+    """
+
+    speed: int
+    steps: int | None
+    length_m: float | None
+    missed: NDArray[np.float64]
+    n_cells: int
+
+
+def reaches(plan: FloorPlan, speeds: tuple[int, ...] = SPEEDS) -> tuple[Reach, ...]:
+    """Find how far a flight gets, at each speed.
+
+    Raises
+    ------
+    WorldError
+        Where the source can be reached at none of the speeds.
+    """
+    radio_map = _map_without_readings(plan)
+    found: list[Reach] = []
+    last_error: WorldError | None = None
+    for speed in speeds:
+        try:
+            world = GridWorld.from_map(plan, radio_map, speed)
+        except WorldError as error:
+            last_error = error
+            found.append(Reach(speed, None, None, np.empty((0, 2)), 0))
+            continue
+        path = shortest_path(world, world.distance_m < GOAL_DISTANCE_M)
+        missed, n_cells = _missed(plan, world, radio_map.grid)
+        found.append(Reach(speed, path.steps, path.length_m, missed, n_cells))
+    if last_error is not None and all(reach.steps is None for reach in found):
+        raise last_error
+    return tuple(found)
+
+
+def unreached(reach: Reach) -> Finding | None:
+    """Tell that cells cannot be reached, at the largest area of them; None where all can."""
+    if not len(reach.missed):
+        return None
+    step_m = CELL_SIZE_M * reach.speed
+    cells = np.rint((reach.missed - reach.missed.min(axis=0)) / step_m).astype(np.int64)
+    raster = np.zeros(cells.max(axis=0) + 1, dtype=bool)
+    raster[tuple(cells.T)] = True
+    areas = np.zeros(raster.shape, dtype=np.int64)
+    ndimage.label(raster, structure=np.ones((3, 3)), output=areas)
+    area_of = areas[tuple(cells.T)]
+    largest = int(np.bincount(area_of).argmax())
+    x, y = reach.missed[area_of == largest].mean(axis=0)
+    share = 100 * len(reach.missed) / reach.n_cells
+    return Finding(
+        "warning",
+        "not reached",
+        f"at speed {reach.speed}, {len(reach.missed)} of {reach.n_cells} cells ({share:.0f} %) "
+        f"cannot be reached from the start; {(area_of == largest).sum()} of them lie around here",
+        (float(x), float(y)),
+    )
+
+
+def _missed(plan: FloorPlan, world: GridWorld, grid: Grid) -> tuple[NDArray[np.float64], int]:
+    """Centres of the cells on the start's lattice that are free but not reached; free cells."""
+    i_x, i_y = np.meshgrid(np.arange(len(grid.x)), np.arange(len(grid.y)))
+    start_y, start_x = world.cell[world.start_state]
+    on_lattice = ((i_x - start_x) % world.speed == 0) & ((i_y - start_y) % world.speed == 0)
+    x, y = np.meshgrid(grid.x, grid.y)
+    walls = shapely.multilinestrings(list(plan.solid_segments(grid.height_m)))
+    centres = shapely.points(x, y)
+    inside = shapely.contains_xy(plan.outline, x, y) & ~shapely.dwithin(centres, walls, 1e-6)
+    free = inside & on_lattice
+    missed = free.copy()
+    missed[tuple(world.cell.T)] = False
+    return np.column_stack([x[missed], y[missed]]), int(free.sum())
+
+
+def _map_without_readings(plan: FloorPlan) -> RadioMap:
+    """Make a map that reads 0 dBm everywhere, for what depends on the walls alone."""
+    grid = Grid.over(plan.bounds, CELL_SIZE_M, min(HEIGHT_M, 0.5 * plan.height_m))
+    zeros = np.zeros(grid.shape)
+    return RadioMap(
+        rss_dbm=zeros,
+        rss_coherent_dbm=zeros,
+        path_count=zeros.astype(np.int64),
+        grid=grid,
+        transmitter=Transmitter(plan.source),
+        config=TraceConfig(),
+        plan_sha256=plan.sha256,
+    )
