@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,6 +128,24 @@ class DecisionProcess:
     start: int
 
 
+class Agent(Protocol):
+    """What training asks of an agent: a name, and what a world means to it.
+
+    `RssAgent` and `LocationAgent` are the paper's. Any other class with these two members can be
+    trained as well; its state is the cell, like the location agent's, and its result cannot be
+    saved.
+    """
+
+    @property
+    def name(self) -> str:
+        """Short name for tables and figures."""
+        ...
+
+    def decision_process(self, world: GridWorld, learning: QLearning) -> DecisionProcess:
+        """Rewards and terminal states of a world."""
+        ...
+
+
 @dataclass(frozen=True)
 class RssAgent:
     """The paper's agent: it knows nothing but the RSS it reads.
@@ -219,9 +237,6 @@ class LocationAgent:
         _check_terminal(world, terminal, f"D < {self.terminal_distance_m:g} m")
         closeness = 1.0 / world.distance_m[world.next_state]
         return _process(world, learning, closeness, terminal)
-
-
-Agent = RssAgent | LocationAgent
 
 
 def _process(

@@ -45,6 +45,7 @@ PAGE_IN = 7.16
 DPI = 300
 
 AGENT_COLOURS = {"rss": "#0072b2", "location": "#d55e00"}
+OTHER_AGENT = "#cc79a7"
 INK = "#1a1a1a"
 FAINT = "#8a8a8a"
 SOURCE = "#d81b60"
@@ -291,12 +292,17 @@ def draw_start(ax: Axes, plan: FloorPlan) -> Line2D:
     return mark
 
 
+def agent_colour(agent: str) -> str:
+    """Colour of an agent, by its name; all agents but the paper's share one."""
+    return AGENT_COLOURS.get(agent, OTHER_AGENT)
+
+
 def draw_flight(ax: Axes, positions: NDArray[np.float64], agent: str) -> Line2D:
     """Draw a flight through positions (n, 2) [m], in its agent's colour on a white edge."""
     (line,) = ax.plot(
         positions[:, 0],
         positions[:, 1],
-        color=AGENT_COLOURS[agent],
+        color=agent_colour(agent),
         linewidth=1.5,
         solid_joinstyle="round",
         path_effects=[withStroke(linewidth=2.7, foreground="white")],

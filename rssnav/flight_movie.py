@@ -26,8 +26,10 @@ from raytrace import RadioMap
 from rssnav.figures import (
     AGENT_COLOURS,
     INK,
+    OTHER_AGENT,
     PAGE_IN,
     SOURCE,
+    agent_colour,
     draw_flight,
     drawing,
 )
@@ -183,7 +185,7 @@ def _panels(plan: FloorPlan) -> tuple[Figure, tuple[Axes, Axes]]:
 
 def _draw_readings(ax: Axes, flight: Flight) -> Line2D:
     (line,) = ax.plot(
-        flight.rss_dbm, color=AGENT_COLOURS[flight.agent], label=flight.label, gid="readings"
+        flight.rss_dbm, color=agent_colour(flight.agent), label=flight.label, gid="readings"
     )
     return line
 
@@ -193,7 +195,7 @@ def _draw_uav(ax: Axes, flight: Flight) -> Line2D:
         *flight.position[:1].T,
         marker="o",
         markersize=6,
-        color=AGENT_COLOURS[flight.agent],
+        color=agent_colour(flight.agent),
         markeredgecolor="white",
         zorder=6,
         gid=f"uav:{flight.agent}",
@@ -281,7 +283,7 @@ def _palette(frame: Frame) -> Frame:
     Of the others, those that fill most of the picture.
     """
     colours, counts = np.unique(frame.reshape(-1, 3), axis=0, return_counts=True)
-    meant = [to_rgb(name) for name in (SOURCE, INK, *AGENT_COLOURS.values())]
+    meant = [to_rgb(name) for name in (SOURCE, INK, OTHER_AGENT, *AGENT_COLOURS.values())]
     exact = np.rint(255.0 * np.array(meant)).astype(np.uint8)
     return np.concatenate([exact, colours[np.argsort(counts)[::-1]]])[:_GIF_COLOURS]
 

@@ -181,6 +181,11 @@ def agent_parameters(agent: Agent) -> dict[str, Any]:
     """An agent as a flat table of parameters."""
     if isinstance(agent, LocationAgent):
         return {"kind": agent.name, "terminal_distance_m": agent.terminal_distance_m}
+    if not isinstance(agent, RssAgent):
+        raise ResultFileError(
+            f"agent {agent.name!r}: only the trainings of RssAgent and LocationAgent can be kept "
+            "in a file; keep the arrays of yours, such as steps and trajectories, with numpy.savez"
+        )
     return {
         "kind": agent.name,
         "terminal_dbm": agent.terminal_dbm,

@@ -43,6 +43,13 @@ Diffractions = Annotated[
     int,
     typer.Option("--diffractions", metavar="N", min=0, max=1, help="Most diffractions on a path."),
 ]
+Frequency = Annotated[
+    float,
+    typer.Option("--frequency", metavar="GHZ", min=0.001, help="Carrier frequency in GHz."),
+]
+Power = Annotated[
+    float, typer.Option("--power", metavar="DBM", help="Power fed to the source's antenna in dBm.")
+]
 Edition = Annotated[
     str | None,
     typer.Option(

@@ -17,17 +17,19 @@ from rssnav.cli.options import (
     Diffractions,
     Edition,
     Force,
+    Frequency,
     Height,
     Json,
     Picture,
     Plan,
+    Power,
     Reflections,
     Style,
     Threads,
     check_suffix,
     examples,
 )
-from rssnav.maps import CELL_SIZE_M, HEIGHT_M, make_map
+from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM, make_map
 
 SCENARIOS = ("scenario1", "scenario2")
 
@@ -55,6 +57,8 @@ def map_plan(
     style: Style = None,
     cell_size: CellSize = CELL_SIZE_M,
     height: Height = HEIGHT_M,
+    frequency: Frequency = FREQUENCY_HZ / 1e9,
+    power: Power = POWER_DBM,
     reflections: Reflections = TraceConfig.max_reflections,
     diffractions: Diffractions = TraceConfig.max_diffractions,
     edition: Edition = None,
@@ -81,6 +85,8 @@ def map_plan(
             cell_size_m=cell_size,
             height_m=height,
             config=TraceConfig(reflections, diffractions),
+            frequency_hz=frequency * 1e9,
+            power_dbm=power,
             edition=edition,
             threads=threads,
             progress=lambda done, total: show(loaded.name, done, total),
