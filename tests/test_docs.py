@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import ast
 import re
+import sys
 from pathlib import Path
+from types import ModuleType
 
+import matplotlib.pyplot as plt
 import pytest
 from documents import PAGES, ROOT, Block, anchors, blocks, links
 from typer.testing import CliRunner
@@ -22,6 +25,11 @@ GALLERY = sorted((ROOT / "docs" / "gallery").glob("*.py"))
 
 def name(page: Path) -> str:
     return str(page.relative_to(ROOT))
+
+
+@pytest.fixture(autouse=True)
+def no_window() -> None:
+    plt.switch_backend("Agg")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name)
@@ -47,12 +55,14 @@ def test_a_lesson_runs_from_its_beginning_to_its_end(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    names: dict[str, object] = {"__name__": "lesson"}
+    lesson = ModuleType("lesson")
+    monkeypatch.setitem(sys.modules, lesson.__name__, lesson)  # dataclasses look it up
     for block in blocks(page.read_text("utf-8")):
         if block.file is not None:
             (tmp_path / block.file).write_text(block.text, "utf-8")
         if block.runs:
-            run(block, names)
+            run(block, lesson.__dict__)
+    plt.close("all")
 
 
 def run(block: Block, names: dict[str, object]) -> None:
@@ -71,11 +81,7 @@ def run(block: Block, names: dict[str, object]) -> None:
 def test_an_example_of_the_gallery_runs(
     example: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import matplotlib.pyplot as plt
-
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("MPLBACKEND", "Agg")
-    plt.switch_backend("Agg")
     with plt.rc_context():
         text = example.read_text("utf-8")
         exec(compile(text, example.name, "exec"), {"__name__": "__main__"})
