@@ -156,13 +156,14 @@ class Paths:
 
     def at(self, receiver: int) -> Paths:
         """Return the paths of one receiver."""
-        return self._rows(np.flatnonzero(self.receiver == receiver))
+        return self.rows(np.flatnonzero(self.receiver == receiver))
 
     def strongest_first(self) -> Paths:
         """Return the same paths, receiver by receiver, strongest first."""
-        return self._rows(np.lexsort([self.length_m, -np.abs(self.gain), self.receiver]))
+        return self.rows(np.lexsort([self.length_m, -np.abs(self.gain), self.receiver]))
 
-    def _rows(self, rows: NDArray[np.int64]) -> Paths:
+    def rows(self, rows: NDArray[np.int64]) -> Paths:
+        """Return some of the paths, by their numbers, in the order of these."""
         return Paths(
             self.receiver[rows],
             self.interactions[rows],

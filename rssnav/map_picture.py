@@ -34,6 +34,9 @@ from rssnav.figures import (
 
 NO_PATH = "#e3e3e3"
 HATCH = "xxxx"
+HATCH_COLOUR = "#a6a6a6"
+"""Lighter than any wall, so that walls between dark rooms stay visible."""
+
 FREE_WALL = "#b9b3a8"
 LONG_M = 40.0
 """A longer plan is drawn over both columns of a page."""
@@ -75,10 +78,10 @@ def draw_radio_map(
     image.set_gid("rss")
     if dark.any():
         _draw_dark_cells(radio_map.grid, dark, ax)
-    _draw_walls(plan, radio_map.grid.height_m, ax)
+    draw_walls(plan, radio_map.grid.height_m, ax)
     draw_source(ax, plan)
     draw_start(ax, plan)
-    _set_limits(plan, ax)
+    set_limits(plan, ax)
     return image
 
 
@@ -94,13 +97,13 @@ def map_figure(plan: FloorPlan, radio_map: RadioMap, *, width_in: float | None =
         Width of the figure [inch]: by default one column of a two-column page, or both for a plan
         longer than 40 m.
     """
-    width_in = width_in or _width_in(plan)
+    width_in = width_in or plan_width_in(plan)
     keys = _keys(plan, radio_map)
     columns = max(1, int(width_in / _KEY_IN))
     title = textwrap.wrap(_title(plan, radio_map), int(width_in / _CHARACTER_IN))
     lines = len(title) + -(-(len(keys) + 2) // columns)
     layout = ConstrainedLayoutEngine(w_pad=_PAD_IN, h_pad=_PAD_IN)
-    figure = Figure((width_in, _height_in(plan, width_in, lines)), layout=layout)
+    figure = Figure((width_in, plan_height_in(plan, width_in, lines)), layout=layout)
     ax = figure.add_subplot()
     image = draw_radio_map(plan, radio_map, ax)
     figure.colorbar(image, ax=ax, label="RSS [dBm]", pad=0.02, aspect=25)
@@ -140,7 +143,7 @@ def _draw_dark_cells(grid: Grid, dark: NDArray[np.bool_], ax: Axes) -> None:
     cells = PolyCollection(
         [*(centres[:, None] + square)],
         facecolors=NO_PATH,
-        edgecolors=INK,
+        edgecolors=HATCH_COLOUR,
         hatch=HATCH,
         linewidths=0,
         zorder=1,
@@ -149,7 +152,7 @@ def _draw_dark_cells(grid: Grid, dark: NDArray[np.bool_], ax: Axes) -> None:
     ax.add_collection(cells, autolim=False)
 
 
-def _draw_walls(plan: FloorPlan, height_m: float, ax: Axes) -> None:
+def draw_walls(plan: FloorPlan, height_m: float, ax: Axes) -> None:
     """Draw all walls lightly, and over them in ink what is solid at a height [m]."""
     whole = np.array([(wall.start, wall.end) for wall in plan.walls])
     layers: Sequence[tuple[str, NDArray[np.float64], str, float]] = (
@@ -164,7 +167,8 @@ def _draw_walls(plan: FloorPlan, height_m: float, ax: Axes) -> None:
         ax.add_collection(lines, autolim=False)
 
 
-def _set_limits(plan: FloorPlan, ax: Axes) -> None:
+def set_limits(plan: FloorPlan, ax: Axes) -> None:
+    """Show the whole plan, with a narrow margin and no frame."""
     x_min, y_min, x_max, y_max = plan.bounds
     margin = 0.01 * max(x_max - x_min, y_max - y_min)
     ax.set_xlim(x_min - margin, x_max + margin)
@@ -172,13 +176,13 @@ def _set_limits(plan: FloorPlan, ax: Axes) -> None:
     ax.spines[:].set_visible(False)
 
 
-def _width_in(plan: FloorPlan) -> float:
+def plan_width_in(plan: FloorPlan) -> float:
     """Width of a plan's picture [inch]."""
     x_min, y_min, x_max, y_max = plan.bounds
     return PAGE_IN if max(x_max - x_min, y_max - y_min) > LONG_M else COLUMN_IN
 
 
-def _height_in(plan: FloorPlan, width_in: float, lines: int) -> float:
+def plan_height_in(plan: FloorPlan, width_in: float, lines: int) -> float:
     """Height of a figure [inch] that its plan and some lines of text fill."""
     x_min, y_min, x_max, y_max = plan.bounds
     drawn_in = (width_in - _BESIDE_IN) * (y_max - y_min) / (x_max - x_min)
@@ -203,5 +207,7 @@ def _keys(plan: FloorPlan, radio_map: RadioMap) -> list[Line2D | Patch]:
     if solid_m < sum(wall.length_m for wall in plan.walls) - _LENGTH_TOLERANCE_M:
         keys.append(Line2D([], [], color=FREE_WALL, lw=0.9, label="opening or low wall"))
     if not np.isfinite(radio_map.rss_dbm).all():
-        keys.append(Patch(facecolor=NO_PATH, edgecolor=INK, hatch=HATCH, lw=0, label="no path"))
+        hatched = Patch(facecolor=NO_PATH, edgecolor=HATCH_COLOUR, hatch=HATCH, lw=0)
+        hatched.set_label("no path")
+        keys.append(hatched)
     return keys

@@ -1,5 +1,9 @@
 """``rssnav paths``: the strongest paths from a plan's source to one receiver."""
 
+import csv
+import sys
+from fnmatch import fnmatchcase
+from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
@@ -8,12 +12,26 @@ from shapely import Point
 
 import floorplans
 from floorplans import FloorPlan
-from raytrace import Paths, SceneError, TraceConfig, Transmitter, trace_paths
-from rssnav.cli.console import print_json, print_pairs, print_table
-from rssnav.cli.options import Diffractions, Json, Plan, Reflections, examples
+from raytrace import Paths, PathStatistics, SceneError, TraceConfig, Transmitter, trace_paths
+from rssnav.cli.console import COMPILING, note, print_json, print_pairs, print_table
+from rssnav.cli.kernel_cache import tracer_cache
+from rssnav.cli.options import (
+    PICTURE_SUFFIXES,
+    Diffractions,
+    Edition,
+    Json,
+    Plan,
+    Reflections,
+    Style,
+    check_suffix,
+    examples,
+)
 from rssnav.maps import FREQUENCY_HZ, HEIGHT_M, POWER_DBM, scene_of
 
 Position = tuple[float, float, float]
+
+DRAWING_SUFFIXES = (*PICTURE_SUFFIXES, ".glb", ".html")
+CSV_COLUMNS = ("path", "power_dbm", "length_m", "delay_s", "interactions", "vertices_m")
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -22,6 +40,7 @@ def add_to(parent: typer.Typer) -> None:
         "paths",
         epilog=examples(
             "rssnav paths flat --to 10.5,1.5 --top 5",
+            "rssnav paths flat --to 10.5,1.5 --only '*D*' --picture diffracted.html",
             "rssnav paths scenario1 --to 93.5,2.5,1.5 --reflections 3 --json",
         ),
     )(show_paths)
@@ -53,31 +72,86 @@ def show_paths(
         ),
     ],
     top: Annotated[
-        int, typer.Option("--top", metavar="N", min=1, help="How many paths to print.")
+        int, typer.Option("--top", metavar="N", min=1, help="How many paths to print and draw.")
     ] = 10,
+    only: Annotated[
+        str,
+        typer.Option(
+            metavar="PATTERN",
+            help="Print and draw only paths whose interactions match, such as RR, LOS or '*D*'.",
+        ),
+    ] = "*",
+    picture: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Draw the paths: .png, .svg or .pdf from above, .glb or .html in 3D.",
+            show_default=False,
+        ),
+    ] = None,
     reflections: Reflections = TraceConfig.max_reflections,
     diffractions: Diffractions = TraceConfig.max_diffractions,
+    edition: Edition = None,
+    style: Style = None,
     as_json: Json = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="Print CSV, for spreadsheets.")] = False,
 ) -> None:
     """Trace every path from a plan's source to a receiver and print the strongest.
 
     Interactions are written in their order: R a reflection, D a diffraction, LOS none.
     """
+    if as_json and as_csv:
+        raise typer.BadParameter("give it or --json, not both.", param_hint="--csv")
+    check_suffix(picture, DRAWING_SUFFIXES, "--picture")
     loaded = floorplans.load(plan)
     _check_inside(loaded, plan, to)
-    source = Transmitter(loaded.source, POWER_DBM, FREQUENCY_HZ)
-    try:
-        paths = trace_paths(
-            scene_of(loaded), source, np.array([to]), TraceConfig(reflections, diffractions)
-        )
-    except SceneError as error:
-        raise SceneError(f"{plan}: {error}") from error
+    paths = _trace(loaded, plan, to, TraceConfig(reflections, diffractions), edition)
+    chosen = _chosen(paths, only, top)
+    if picture is not None:
+        _draw(loaded, chosen, only, picture, style)
     totals = _totals(paths)
+    rows = [_row(chosen, k) for k in range(len(chosen))]
     if as_json:
-        rows = [_row(paths, k) for k in range(min(top, len(paths)))]
         print_json({"plan": plan, "receiver_m": to, **totals, "strongest": rows})
+    elif as_csv:
+        _print_csv(rows)
     else:
-        _print(paths, totals, top)
+        _print(rows, totals)
+
+
+def _trace(
+    plan: FloorPlan, name: str, to: Position, config: TraceConfig, edition: str | None
+) -> Paths:
+    """Every path to a receiver, strongest first."""
+    if not tracer_cache().n_compiled:
+        note(COMPILING)
+    source = Transmitter(plan.source, POWER_DBM, FREQUENCY_HZ)
+    try:
+        return trace_paths(scene_of(plan, edition), source, np.array([to]), config)
+    except SceneError as error:
+        raise SceneError(f"{name}: {error}") from error
+
+
+def _chosen(paths: Paths, only: str, top: int) -> Paths:
+    """The strongest paths whose interactions match a pattern."""
+    rows = [k for k in range(len(paths)) if fnmatchcase(paths.sequence(k), only.upper())]
+    return paths.rows(np.array(rows[:top], dtype=np.int64))
+
+
+def _draw(plan: FloorPlan, paths: Paths, only: str, picture: Path, style: str | None) -> None:
+    """Draw paths into a file; a note says so where there is none."""
+    from rssnav.figures import chosen_style
+    from rssnav.path_picture import save_paths_picture
+
+    if not len(paths):
+        note(f"no path to draw; {picture} is not written")
+        return
+    x, y, z = paths.vertices[0, -1]
+    kind = "" if only == "*" else f" {only.upper()}"
+    what = f"the {len(paths)} strongest paths" if len(paths) > 1 else "the strongest path"
+    title = f"{plan.name}: {what}{kind} to ({x:g}, {y:g}, {z:g}) m"
+    with chosen_style(style):
+        save_paths_picture(plan, paths, POWER_DBM, title, picture)
 
 
 def _check_inside(plan: FloorPlan, name: str, to: Position) -> None:
@@ -92,21 +166,17 @@ def _check_inside(plan: FloorPlan, name: str, to: Position) -> None:
 
 
 def _totals(paths: Paths) -> dict[str, Any]:
-    """Sums over all paths: powers, coherent field, spread of the delays."""
-    power = np.abs(paths.gain) ** 2
-    total = float(power.sum())
-    weights = power / total if total > 0.0 else power
-    mean_s = float(weights @ paths.delay_s)
+    """Sums over all paths: powers, coherent field, delays, directions."""
+    s = PathStatistics.of(paths, POWER_DBM, 1)
     return {
         "paths": len(paths),
-        "rss_dbm": _dbm(total),
-        "rss_coherent_dbm": _dbm(float(np.abs(paths.gain.sum()) ** 2)),
-        "delay_spread_s": float(np.sqrt(weights @ (paths.delay_s - mean_s) ** 2)),
+        "rss_dbm": float(s.rss_dbm[0]),
+        "rss_coherent_dbm": float(s.rss_coherent_dbm[0]),
+        "mean_delay_s": float(s.mean_delay_s[0]),
+        "delay_spread_s": float(s.delay_spread_s[0]),
+        "angular_spread": float(s.angular_spread[0]),
+        "k_factor_db": float(s.k_factor_db[0]),
     }
-
-
-def _dbm(power_gain: float) -> float:
-    return POWER_DBM + 10.0 * float(np.log10(power_gain)) if power_gain > 0.0 else -np.inf
 
 
 def _row(paths: Paths, k: int) -> dict[str, Any]:
@@ -119,8 +189,7 @@ def _row(paths: Paths, k: int) -> dict[str, Any]:
     }
 
 
-def _print(paths: Paths, totals: dict[str, Any], top: int) -> None:
-    rows = [_row(paths, k) for k in range(min(top, len(paths)))]
+def _print(rows: list[dict[str, Any]], totals: dict[str, Any]) -> None:
     print_table(
         (">path", ">power [dBm]", ">length [m]", ">delay [ns]", "interactions"),
         [
@@ -139,6 +208,19 @@ def _print(paths: Paths, totals: dict[str, Any], top: int) -> None:
             ("all paths", totals["paths"]),
             ("RSS, sum of powers", f"{totals['rss_dbm']:.2f} dBm"),
             ("RSS, coherent sum", f"{totals['rss_coherent_dbm']:.2f} dBm"),
+            ("mean delay", f"{totals['mean_delay_s'] * 1e9:.2f} ns"),
             ("rms delay spread", f"{totals['delay_spread_s'] * 1e9:.2f} ns"),
+            ("angular spread", f"{totals['angular_spread']:.3f}"),
+            ("K factor", f"{totals['k_factor_db']:.2f} dB"),
         ]
     )
+
+
+def _print_csv(rows: list[dict[str, Any]]) -> None:
+    """Print a line a path; its vertices as "x y z; x y z"."""
+    table = csv.writer(sys.stdout, lineterminator="\n")
+    table.writerow(CSV_COLUMNS)
+    for number, row in enumerate(rows, 1):
+        places = "; ".join(" ".join(f"{c:.9g}" for c in vertex) for vertex in row["vertices_m"])
+        numbers = (row[key] for key in ("power_dbm", "length_m", "delay_s"))
+        table.writerow([number, *numbers, row["interactions"], places])
