@@ -9,6 +9,7 @@ ends in ``_db`` or ``_dbm``.
 from raytrace.antenna_patterns import PatternTable
 from raytrace.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
 from raytrace.errors import AntennaError, MapFileError, SceneError, SceneWarning
+from raytrace.estimate import CostEstimate, estimate_cost
 from raytrace.grid import Grid, TraceConfig
 from raytrace.materials import ABSORBER, PERFECT_CONDUCTOR, Dielectric, Layer, Layered, Material
 from raytrace.path_statistics import PathStatistics
@@ -24,6 +25,7 @@ __all__ = [
     "PERFECT_CONDUCTOR",
     "Antenna",
     "AntennaError",
+    "CostEstimate",
     "Dielectric",
     "Grid",
     "HalfWaveDipole",
@@ -43,5 +45,6 @@ __all__ = [
     "TraceConfig",
     "Transmitter",
     "compute_radio_map",
+    "estimate_cost",
     "trace_paths",
 ]

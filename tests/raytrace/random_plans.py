@@ -46,7 +46,7 @@ def _free(rng: Generator, outline: tuple[Point, ...], inside: list[Sheets]) -> S
 
 def _joined(rng: Generator, outline: tuple[Point, ...], inside: list[Sheets]) -> Sheets:
     """Return a wall from somewhere along another one, across whatever comes, to a free end."""
-    walls = [*ring(outline), *(s for sheets in inside for s in sheets)]
+    walls = _standing(outline, inside)
     start = _along(walls[rng.integers(len(walls))], rng.uniform(0.2, 0.8))
     return _first_clear(rng, lambda: (start, _point_in(rng, outline)), outline)
 
@@ -64,7 +64,7 @@ def _between(rng: Generator, outline: tuple[Point, ...], inside: list[Sheets]) -
 
 def _again(rng: Generator, outline: tuple[Point, ...], inside: list[Sheets]) -> Sheets:
     """Return a second wall over a stretch of one that is there, of another material."""
-    walls = [*ring(outline), *(s for sheets in inside for s in sheets)]
+    walls = _standing(outline, inside)
     old = walls[rng.integers(len(walls))]
     start, end = _along(old, rng.uniform(0.1, 0.4)), _along(old, rng.uniform(0.6, 0.9))
     return wall(start, end, slab=GLASS, **_heights(rng))
@@ -143,5 +143,11 @@ def _point_in(rng: Generator, outline: tuple[Point, ...]) -> Point:
 
 
 def _lines(outline: tuple[Point, ...], inside: list[Sheets]) -> shapely.Geometry:
-    sides = [(s.start, s.end) for s in (*ring(outline), *(s for sheets in inside for s in sheets))]
-    return shapely.union_all([shapely.LineString(s) for s in sides])
+    return shapely.union_all(
+        [shapely.LineString([s.start, s.end]) for s in _standing(outline, inside)]
+    )
+
+
+def _standing(outline: tuple[Point, ...], inside: list[Sheets]) -> list[Sheet]:
+    sheets = (*ring(outline), *(s for sheets in inside for s in sheets))
+    return [s for s in sheets if s.start != s.end]
