@@ -10,7 +10,7 @@ import shapely
 from shapely.geometry import Polygon
 
 from floorplans.errors import PlanError, unknown_name
-from floorplans.importers.draft import Draft, ImportOptions, Origin, RawOpening
+from floorplans.importers.draft import Draft, ImportOptions, Origin, RawOpening, RawWall
 from floorplans.importers.enclosing import Storey, enclose
 from floorplans.importers.hanging import (
     DOOR_HEAD_M,
@@ -36,6 +36,8 @@ from floorplans.walls import TOLERANCE_M, Wall
 HEIGHT_M = 3.0
 WALL_THICKNESS_M = 0.1
 WALL_MATERIAL = "plasterboard"
+THICK_WALL_MATERIAL, THICK_M = "concrete", 0.18
+"""Of walls known to be at least as thick [m], where the file names no material."""
 SLAB_MATERIAL = "concrete"
 THICKNESS_SHARE = 0.3
 """Walls in one line are joined where their thicknesses differ by at most this share."""
@@ -132,13 +134,18 @@ def _walls(draft: Draft, options: ImportOptions, height_m: float) -> tuple[Wall,
         Wall(
             start=tidy_point(*raw.start),
             end=tidy_point(*raw.end),
-            material=raw.material or options.wall_material or WALL_MATERIAL,
+            material=raw.material or options.wall_material or _usual_material(raw),
             thickness_m=round(raw.thickness_m or options.wall_thickness_m or WALL_THICKNESS_M, 4),
             height_m=min(raw.height_m or height_m, height_m),
         )
         for raw in draft.walls
     )
     return tuple(wall for wall in walls if wall.length_m > TOLERANCE_M)
+
+
+def _usual_material(raw: RawWall) -> str:
+    thick = raw.thickness_m is not None and raw.thickness_m >= THICK_M
+    return THICK_WALL_MATERIAL if thick else WALL_MATERIAL
 
 
 def _building(
@@ -212,7 +219,8 @@ def _wall_assumptions(draft: Draft, options: ImportOptions) -> Iterator[Assumpti
     thin = sum(raw.thickness_m is None for raw in draft.walls)
     if bare and options.wall_material is None:
         why = f"the file gives {bare} of {n} drawn walls no material"
-        yield Assumption("wall material", WALL_MATERIAL, why)
+        value = f"{WALL_MATERIAL}, {THICK_WALL_MATERIAL} from {THICK_M:g} m thickness on"
+        yield Assumption("wall material", value, why)
     if thin and options.wall_thickness_m is None:
         why = f"the file gives {thin} of {n} drawn walls no thickness"
         yield Assumption("wall thickness_m", f"{WALL_THICKNESS_M:g}", why)

@@ -10,7 +10,7 @@ leaves, and from lines that lie in a gap; other lines of windows are walls of gl
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,12 +25,15 @@ from floorplans.importers.dxf_curves import Curve, Swing
 from floorplans.importers.dxf_drawing import Content, load_document, read_content
 from floorplans.importers.dxf_layers import Layers, layers_of
 from floorplans.importers.dxf_openings import (
+    as_windows_outside,
+    door_swings,
     loose_lines,
     opening_of_swing,
     openings_of_symbol,
 )
 from floorplans.importers.gap_filling import fill_gaps
-from floorplans.importers.hanging import WINDOW_MATERIAL, WINDOW_THICKNESS_M
+from floorplans.importers.hanging import WINDOW_MATERIAL, WINDOW_THICKNESS_M, join_leaves
+from floorplans.importers.material_runs import by_material, without_openings
 from floorplans.importers.units import UNITS, check_size, guess_unit, unit_length
 from floorplans.importers.wall_areas import MAX_THICKNESS_M, walls_of_area
 from floorplans.importers.wall_strips import strips_of_lines
@@ -44,18 +47,28 @@ _PAIR_M = 0.6
 """Two lines farther apart than this are not the sides of one wall [m]."""
 _CLOSE_M = 0.02
 _IN_WALL_M = 0.05
+_AT_FACE_M = 0.12
+_MIN_SINGLE_M = 0.3
 
 _INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 14: "dm"}
 
 Material = str | None
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Bodies:
-    """Walls of one material: their area, and single lines (n, 2, 2) [m]."""
+    """What the layers of walls hold.
 
-    area: list[Polygon] = field(default_factory=list[Polygon])
-    singles: list[NDArray[np.float64]] = field(default_factory=list[NDArray[np.float64]])
+    Attributes
+    ----------
+    area : mapping of Material to shapely geometry
+        Area of wall of each material [m].
+    singles : tuple of (LineString, Material)
+        Lines without a partner [m].
+    """
+
+    area: Mapping[Material, BaseGeometry]
+    singles: tuple[tuple[LineString, Material], ...]
 
 
 def read_dxf(path: Path, options: ImportOptions) -> Draft:
@@ -140,30 +153,54 @@ def _in_metres(content: Content, unit_m: float) -> Content:
 def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[RawOpening]]:
     """Walls and openings of a drawing in metres."""
     bodies = _bodies(content, layers)
-    area, singles = _area(bodies), _singles(bodies)
-    ground = shapely.union_all([area, singles])
+    area = shapely.union_all(list(bodies.area.values()))
+    ground = shapely.union_all(
+        [area, *(line for line, _ in bodies.singles), *_panes(content, layers)]
+    )
     openings = [o for symbol in content.symbols for o in openings_of_symbol(symbol, ground)]
-    openings += _swing_openings(content, layers, ground)
-    fillings = list(fill_gaps(area, openings))
-    loose, glass = _loose_openings(content, layers, shapely.union_all([area, *fillings]))
-    fillings += fill_gaps(area, loose)
-    for filling in fillings:
-        _share_of(bodies, filling).area.append(filling)
-    walls = [wall for material, body in bodies.items() for wall in _walls(body, material)]
-    return walls + _glass_walls(glass), openings + loose
+    openings = join_leaves([*openings, *_swing_openings(content, layers, ground)])
+    area = shapely.union_all([area, *fill_gaps(area, openings)])
+    loose, glass = _loose_openings(content, layers, area)
+    area = shapely.union_all([area, *fill_gaps(area, loose)])
+    openings = as_windows_outside([*openings, *loose], area)
+    solid = without_openings(bodies.area, openings)
+    walls = walls_of_area(area, _CLOSE_M) if not area.is_empty else []
+    return [
+        *(piece for wall in walls for piece in by_material(wall, solid)),
+        *_single_walls(bodies, area),
+        *_glass_walls(glass, area),
+    ], openings
 
 
-def _bodies(content: Content, layers: Layers) -> dict[Material, _Bodies]:
+def _panes(content: Content, layers: Layers) -> list[LineString]:
+    """Lines of windows, which may be walls of glass that doors stand in."""
+    curves = [curve for layer in layers.of("window") for curve in content.curves[layer]]
+    return [LineString(curve.points) for curve in curves]
+
+
+def _bodies(content: Content, layers: Layers) -> _Bodies:
     """Area of wall and single lines of each material."""
     curves: dict[Material, list[Curve]] = {}
     for layer in layers.of("wall"):
         curves.setdefault(layers.material(layer), []).extend(content.curves[layer])
-    bodies: dict[Material, _Bodies] = {}
+    area: dict[Material, BaseGeometry] = {}
+    singles: list[tuple[LineString, Material]] = []
     for material, chains in curves.items():
-        area, segments = _thin_bodies(chains)
+        closed, segments = _thin_bodies(chains)
         walls = strips_of_lines(segments, _PAIR_M)
-        bodies[material] = _Bodies([*area, *walls.area], [walls.singles])
-    return bodies
+        area[material] = shapely.union_all([*closed, *walls.area])
+        singles += [(LineString(ends), material) for ends in walls.singles]
+    return _Bodies(area, tuple(singles))
+
+
+def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:
+    """Walls on lines without a partner; what lies beside a face of a wall is left out."""
+    wide = area.buffer(_AT_FACE_M)
+    for line, material in bodies.singles:
+        for part in shapely.get_parts(line.difference(wide)):
+            if part.length > min(_MIN_SINGLE_M, line.length / 2):
+                (x0, y0), *_, (x1, y1) = part.coords
+                yield RawWall((x0, y0), (x1, y1), None, material)
 
 
 def _thin_bodies(chains: Sequence[Curve]) -> tuple[list[Polygon], NDArray[np.float64]]:
@@ -180,26 +217,10 @@ def _thin_bodies(chains: Sequence[Curve]) -> tuple[list[Polygon], NDArray[np.flo
     return area, np.concatenate(segments) if segments else np.empty((0, 2, 2))
 
 
-def _area(bodies: Mapping[Material, _Bodies]) -> BaseGeometry:
-    return shapely.union_all([polygon for body in bodies.values() for polygon in body.area])
-
-
-def _singles(bodies: Mapping[Material, _Bodies]) -> BaseGeometry:
-    lines = [line for body in bodies.values() for line in np.concatenate(body.singles)]
-    return shapely.union_all([LineString(line) for line in lines])
-
-
 def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> list[RawOpening]:
     """Openings of door leaves that are drawn as they are, without a block."""
     curves = [curve for layer in layers.of("door") for curve in content.curves[layer]]
-    return [
-        opening_of_swing(curve.swing, curves, ground)
-        for curve in curves
-        if curve.swing is not None and _LEAF_M[0] <= curve.swing.radius <= _LEAF_M[1]
-    ]
-
-
-_LEAF_M = (0.35, 2.0)
+    return [opening_of_swing(swing, curves, ground) for swing in door_swings(curves)]
 
 
 def _loose_openings(
@@ -234,28 +255,19 @@ def _stands(opening: RawOpening, area: BaseGeometry) -> bool:
     return in_wall or bool(fill_gaps(area, [opening]))
 
 
-def _share_of(bodies: Mapping[Material, _Bodies], filling: Polygon) -> _Bodies:
-    """Walls that a filling goes on from: those it overlaps most."""
-    return max(
-        bodies.values(),
-        key=lambda body: sum(filling.intersection(polygon).area for polygon in body.area),
-    )
+def _glass_walls(lines: Sequence[LineString], area: BaseGeometry) -> list[RawWall]:
+    """Walls of glass on single lines, and between two lines that face each other.
 
-
-def _walls(body: _Bodies, material: Material) -> Iterator[RawWall]:
-    area = shapely.union_all(body.area)
-    for wall in walls_of_area(area, _CLOSE_M) if not area.is_empty else ():
-        yield replace(wall, material=material)
-    for (x0, y0), (x1, y1) in np.concatenate(body.singles).tolist():
-        yield RawWall((x0, y0), (x1, y1), None, material)
-
-
-def _glass_walls(lines: Sequence[LineString]) -> list[RawWall]:
-    """Walls of glass on single lines, and between two lines that face each other."""
-    segments = [np.stack([c[:-1], c[1:]], axis=1) for c in map(shapely.get_coordinates, lines)]
-    if not segments:
+    What lies in other walls or on their faces is left out.
+    """
+    wide = area.buffer(_IN_WALL_M)
+    parts = shapely.get_parts([line.difference(wide) for line in lines])
+    chains = [shapely.get_coordinates(part) for part in parts if part.length > _MIN_SINGLE_M]
+    if not chains:
         return []
-    walls = strips_of_lines(np.concatenate(segments), _PAIR_M)
+    walls = strips_of_lines(
+        np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in chains]), _PAIR_M
+    )
     found = walls_of_area(shapely.union_all(list(walls.area)), _CLOSE_M) if walls.area else []
     ends = [(wall.start, wall.end) for wall in found]
     ends += [((x0, y0), (x1, y1)) for (x0, y0), (x1, y1) in walls.singles.tolist()]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, cos, degrees, dist, floor, isfinite, radians
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from floorplans.walls import Point
 
 if TYPE_CHECKING:
     from ezdxf.entities.dxfgfx import DXFGraphic
+    from ezdxf.math import Matrix44
 
 CHORD_STEPS = (90.0, 45.0, 22.5, 11.25, 5.625, 2.8125)
 """Angles of chords [degrees]: concentric arcs are cut at the same angles."""
@@ -73,6 +74,19 @@ def curves_of(entity: DXFGraphic, tolerance: float) -> list[Curve]:
     except (ArithmeticError, AttributeError, IndexError, TypeError, ValueError):
         return []  # a damaged entity; the layer's count still shows it
     return [curve for curve in curves if len(curve.points) > 1 and _finite(curve)]
+
+
+def moved_curve(curve: Curve, matrix: Matrix44) -> Curve:
+    """Move a curve by the transformation of an insert."""
+
+    def moved(points: Iterable[Point]) -> tuple[Point, ...]:
+        return tuple(map(_flat, matrix.transform_vertices([(x, y, 0.0) for x, y in points])))
+
+    swing = curve.swing
+    if swing is not None:
+        hinge, start, end = moved((swing.hinge, *swing.ends))
+        swing = Swing(hinge, (start, end))
+    return replace(curve, points=moved(curve.points), swing=swing)
 
 
 def chord_step_deg(radius: float, tolerance: float) -> float:

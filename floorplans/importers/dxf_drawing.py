@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from floorplans.errors import PlanError
-from floorplans.importers.dxf_curves import CURVE_TYPES, Curve, curves_of
+from floorplans.importers.dxf_curves import CURVE_TYPES, Curve, curves_of, moved_curve
 from floorplans.importers.layer_names import Kind, Meaning, meaning_of
 
 if TYPE_CHECKING:
@@ -35,9 +35,13 @@ _FILLED = ("HATCH", "SOLID", "TRACE")
 
 @dataclass(frozen=True)
 class Symbol:
-    """A door or a window: the curves of its block, and the block's x axis."""
+    """A door or a window: the curves of its block, and the block's x axis.
+
+    `named` tells whether the block's own name says its kind, or a layer of windows does.
+    """
 
     kind: Kind
+    named: bool
     layer: str
     axis: tuple[float, float]
     curves: tuple[Curve, ...]
@@ -115,11 +119,15 @@ _LESS = "save one storey, with the layers of its walls, doors and windows only"
 
 def _load(path: Path) -> Document:
     """Read a document, damaged ones as far as possible."""
+    import ezdxf.filemanagement
     from ezdxf import recover
     from ezdxf.lldxf.const import DXFError
 
     try:
-        document, _ = recover.readfile(path)
+        try:
+            document = ezdxf.filemanagement.readfile(path)
+        except (DXFError, UnicodeDecodeError):
+            document, _ = recover.readfile(path)
     except DXFError as error:
         raise PlanError(f"not a DXF file that can be read: {error}") from error
     except OSError as error:
@@ -175,6 +183,7 @@ class _Collector:
         self._layers = layers
         self._tolerance = tolerance
         self._meanings: dict[str, Meaning] = {}
+        self._blocks: dict[str, tuple[Curve, ...]] = {}
 
     def collect(self, entities: Iterable[DXFGraphic], within: str | None, depth: int) -> None:
         """Take in entities; those of a block on layer 0 are on the layer `within`."""
@@ -201,31 +210,43 @@ class _Collector:
     def _collect_insert(self, insert: Any, layer: str, depth: int) -> None:
         layer_kind = self._meaning(layer).kind
         name_kind = meaning_of(insert.dxf.name).kind
-        kind = name_kind if name_kind in ("door", "window") else layer_kind
+        named = name_kind in ("door", "window")
+        kind = name_kind if named else layer_kind
         if layer_kind == "ignore" or depth >= _MAX_DEPTH:
             self._content.n_objects[layer] += 1
         elif kind in ("door", "window"):
             self._content.n_objects[layer] += 1
             for single in _singles(insert):
-                self._content.symbols.append(self._symbol(single, kind, layer, depth))
+                self._content.symbols.append(self._symbol(single, kind, named, layer, depth))
         else:
             for single in _singles(insert):
                 self.collect(single.virtual_entities(), layer, depth + 1)
 
-    def _symbol(self, insert: Any, kind: Kind, layer: str, depth: int) -> Symbol:
-        x, y, _ = insert.matrix44().ux
+    def _symbol(self, insert: Any, kind: Kind, named: bool, layer: str, depth: int) -> Symbol:
+        matrix = insert.matrix44()
+        x, y, _ = matrix.ux
         usable = isfinite(hypot(x, y)) and hypot(x, y) > 0
         axis = (float(x), float(y)) if usable else (1.0, 0.0)
-        return Symbol(kind, layer, axis, tuple(self._all_curves(insert, depth)))
+        curves = tuple(moved_curve(curve, matrix) for curve in self._block(insert, depth))
+        return Symbol(kind, named or kind == "window", layer, axis, curves)
 
-    def _all_curves(self, insert: Any, depth: int) -> Iterator[Curve]:
-        """Lines of a block and of those in it, whatever their layers."""
-        for entity in insert.virtual_entities():
+    def _block(self, insert: Any, depth: int) -> tuple[Curve, ...]:
+        """Lines of an insert's block and of those in it, in the block's own coordinates."""
+        name = str(insert.dxf.name)
+        if name not in self._blocks:
+            self._blocks[name] = ()
+            block = insert.block()
+            self._blocks[name] = tuple(self._all_curves(block, depth)) if block else ()
+        return self._blocks[name]
+
+    def _all_curves(self, entities: Iterable[DXFGraphic], depth: int) -> Iterator[Curve]:
+        for entity in entities:
             if entity.dxftype() in CURVE_TYPES and entity.dxftype() not in _FILLED:
                 yield from curves_of(entity, self._tolerance)
             elif entity.dxftype() == "INSERT" and depth < _MAX_DEPTH:
                 for single in _singles(entity):
-                    yield from self._all_curves(single, depth + 1)
+                    matrix = single.matrix44()
+                    yield from (moved_curve(c, matrix) for c in self._block(single, depth + 1))
 
 
 def _singles(insert: Any) -> Iterator[Any]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from math import dist, hypot
+from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 import shapely
@@ -20,9 +20,15 @@ from floorplans.walls import Point as Point2
 _LEAF_M = (0.35, 2.0)
 _LEAF_SHARE = 0.4
 """Arcs smaller than this share of a symbol's largest are handles and stops."""
-_BESIDE_M = 0.08
+_BESIDE_M = 0.1
+"""A door's hinge is drawn as far beside its wall [m]."""
+_ONWARD_M = 1.0
+"""How far a wall is looked for at both sides of a door [m]."""
+_DRAWN_SHARE = 0.8
 _CLUSTER_M = 0.1
 _MAX_DEPTH_M = 1.0
+_SHUT_M = 1.5
+"""Half of the widest gap over which outer walls are taken to go on [m]."""
 _MIN_WIDTH_M = 0.3
 
 
@@ -30,8 +36,8 @@ def openings_of_symbol(symbol: Symbol, walls: BaseGeometry) -> list[RawOpening]:
     """Openings of a door's or window's block, in metres.
 
     A door is as wide as the radius of its swing, and lies between the hinge and that end of the
-    arc that is nearer to a wall and has no leaf drawn to it. Without a swing, the opening is the
-    longer side of the block's box, along the block's own axes.
+    arc towards which its wall goes on. Without a swing, the opening is the longer side of the
+    block's box, along the block's own axes.
 
     Parameters
     ----------
@@ -42,7 +48,8 @@ def openings_of_symbol(symbol: Symbol, walls: BaseGeometry) -> list[RawOpening]:
     Returns
     -------
     list of RawOpening
-        Empty where the symbol is too small to be an opening.
+        Empty where the symbol is too small to be an opening; a "passage" where neither name nor
+        swing tells whether it is a door or a window: see `as_windows_outside`.
     """
     kind: OpeningKind = "window" if symbol.kind == "window" else "door"
     swings = door_swings(symbol.curves) if kind == "door" else []
@@ -50,7 +57,9 @@ def openings_of_symbol(symbol: Symbol, walls: BaseGeometry) -> list[RawOpening]:
         return [opening_of_swing(swing, symbol.curves, walls) for swing in swings]
     points = [point for curve in symbol.curves for point in curve.points]
     opening = _opening_of_box(points, symbol.axis, kind)
-    return [opening] if opening is not None else []
+    if opening is None:
+        return []
+    return [opening if symbol.named else replace(opening, kind="passage")]
 
 
 def door_swings(curves: Sequence[Curve]) -> list[Swing]:
@@ -62,19 +71,32 @@ def door_swings(curves: Sequence[Curve]) -> list[Swing]:
 
 
 def opening_of_swing(swing: Swing, curves: Sequence[Curve], walls: BaseGeometry) -> RawOpening:
-    """Opening that a leaf closes when it is shut."""
+    """Opening that a leaf closes when it is shut: the way on which the wall goes on.
+
+    Parameters
+    ----------
+    swing : Swing
+    curves : sequence of Curve
+        Of the same symbol; the leaf among them is drawn open.
+    walls : shapely geometry
+        All lines and areas of walls [m].
+    """
     lines = [LineString(curve.points) for curve in curves if curve.swing is None]
     leaves = shapely.union_all([line.buffer(_BESIDE_M) for line in lines])
+    x, y = swing.hinge
+    near = walls.intersection(Point(x, y).buffer(swing.radius + 2 * _ONWARD_M)).buffer(_BESIDE_M)
 
-    def rank(end: Point2) -> tuple[float, float]:
+    def wall_onward_m(end: Point2) -> float:
+        """Length of wall behind the hinge and beyond the end, less where the leaf is drawn."""
+        ux, uy = (end[0] - x) / swing.radius, (end[1] - y) / swing.radius
+        behind = LineString([swing.hinge, (x - ux * _ONWARD_M, y - uy * _ONWARD_M)])
+        beyond = LineString([end, (end[0] + ux * _ONWARD_M, end[1] + uy * _ONWARD_M)])
         leaf = LineString([swing.hinge, end])
-        drawn = leaf.intersection(leaves).length / leaf.length > 0.8
-        return (
-            round(Point(end).distance(walls), 2) + (0.3 if drawn else 0.0),
-            dist(end, swing.hinge),
-        )
+        drawn = leaf.intersection(leaves).length > _DRAWN_SHARE * leaf.length
+        wall_m = behind.intersection(near).length + beyond.intersection(near).length
+        return wall_m - (_ONWARD_M / 2 if drawn else 0.0)
 
-    return RawOpening.between(swing.hinge, min(swing.ends, key=rank), "door")
+    return RawOpening.between(swing.hinge, max(swing.ends, key=wall_onward_m), "door")
 
 
 def _opening_of_box(points: Sequence[Point2], axis: Point2, kind: OpeningKind) -> RawOpening | None:
@@ -94,6 +116,27 @@ def _opening_of_box(points: Sequence[Point2], axis: Point2, kind: OpeningKind) -
     return RawOpening(
         (float(x), float(y)), width_m, kind, (float(frame[side][0]), float(frame[side][1]))
     )
+
+
+def as_windows_outside(openings: Sequence[RawOpening], area: BaseGeometry) -> list[RawOpening]:
+    """Take an opening nothing is known of for a window in the outer walls, for a door inside.
+
+    Parameters
+    ----------
+    openings : sequence of RawOpening
+        Those not known are of kind "passage".
+    area : shapely geometry
+        Of the walls [m].
+    """
+    closed = shapely.get_parts(area.buffer(_SHUT_M))
+    blocks = [Polygon(part.exterior) for part in closed if isinstance(part, Polygon)]
+    inner = shapely.union_all(blocks).buffer(-_SHUT_M - _MAX_DEPTH_M / 2)
+    return [
+        replace(opening, kind="door" if inner.contains(Point(opening.centre)) else "window")
+        if opening.kind == "passage"
+        else opening
+        for opening in openings
+    ]
 
 
 @dataclass(frozen=True)

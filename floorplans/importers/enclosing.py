@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import dist
 
 import numpy as np
@@ -88,15 +89,28 @@ def _best_region(pieces: Sequence[Wall], given: Polygon | None) -> tuple[Polygon
             continue
         share = _length_inside(lines, region) / total_m
         if best is None or share > best[0] + _ENOUGH:
-            edge = region.boundary.buffer(_ON_EDGE_M)
-            needed = [link for link in links if edge.covers(LineString(link))]
-            best = (share, region, needed)
+            best = (share, region, _open_stretches(region, lines))
     if best is None:
         raise PlanError(
             "the walls close no region, even with gaps of "
             f"{_GAPS_M[-1]:g} m closed; check which layers hold the walls, and the unit"
         )
-    return best[1], best[2]
+    outline = best[1].simplify(TOLERANCE_M / 10)
+    assert isinstance(outline, Polygon)
+    return outline, best[2]
+
+
+def _open_stretches(region: Polygon, lines: NDArray[np.object_]) -> list[Link]:
+    """Sides of a region, cut wherever walls or links meet, that are no walls."""
+    sides = [
+        ((float(a[0]), float(a[1])), (float(b[0]), float(b[1])))
+        for ring in (region.exterior, *region.interiors)
+        for a, b in pairwise(ring.coords)
+    ]
+    middles = shapely.line_interpolate_point(shapely.linestrings(sides), 0.5, normalized=True)
+    walls = shapely.STRtree(lines).query(middles, "dwithin", distance=TOLERANCE_M)[0]
+    covered = set(walls.tolist())
+    return [side for i, side in enumerate(sides) if i not in covered]
 
 
 def _region(
@@ -114,8 +128,7 @@ def _region(
         return None
     largest = max(polygons, key=lambda polygon: polygon.area)
     holes = list(largest.interiors) if given is not None else []
-    simple = Polygon(largest.exterior, holes).simplify(TOLERANCE_M / 10)
-    return simple if isinstance(simple, Polygon) else None
+    return Polygon(largest.exterior, holes)
 
 
 def _length_inside(lines: NDArray[np.object_], region: Polygon) -> float:
@@ -141,6 +154,18 @@ def _links(pieces: Sequence[Wall], lines: NDArray[np.object_], gap_m: float) -> 
                 _nearest(hit, here) for hit in [ray.intersection(others)] if not hit.is_empty
             ]
         links += [(here, to) for to in targets if _free(here, to, others)]
+    return links + _links_between_parts(lines, gap_m)
+
+
+def _links_between_parts(lines: NDArray[np.object_], gap_m: float) -> list[Link]:
+    """Shortest ways between walls that hang together and others, such as pillars."""
+    parts = shapely.get_parts(shapely.union_all([line.buffer(TOLERANCE_M) for line in lines]))
+    near = shapely.STRtree(parts).query(parts, predicate="dwithin", distance=gap_m)
+    links: list[Link] = []
+    for i, j in near[:, near[0] < near[1]].T.tolist():
+        ends = shapely.get_coordinates(shapely.shortest_line(parts[i], parts[j]))
+        here, to = (_nearest(MultiLineString(list(lines)), tidy_point(x, y)) for x, y in ends)
+        links.append((here, to))
     return links
 
 

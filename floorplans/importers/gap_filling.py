@@ -14,7 +14,7 @@ from shapely.geometry.base import BaseGeometry
 
 from floorplans.importers.draft import RawOpening
 
-_BESIDE_M = 0.6
+_BESIDE_M = 1.0
 """How far beside an opening's middle the gap's sides are looked for [m]."""
 _FRAME_M = 0.3
 """How far a gap may go on beyond an opening at each side [m]."""
@@ -73,7 +73,7 @@ def _gap(local: BaseGeometry, width_m: float) -> Polygon | None:
     sides = np.array([_sides(local, float(row), width_m) for row in rows])
     bridged = np.array(np.isfinite(sides).all(axis=1))
     run = _run_nearest_middle(bridged)
-    if run is None or run[0] == 0 or run[1] == len(rows):
+    if run is None or run == (0, len(rows)):
         return None
     left, right = np.median(sides[run[0] : run[1]], axis=0)
     low, high = rows[run[0]] - _STEP_M / 2, rows[run[1] - 1] + _STEP_M / 2

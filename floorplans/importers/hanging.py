@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
-from math import dist, hypot, radians, sin
+from math import hypot, radians, sin
 
 import shapely
 from shapely.geometry import LineString, Point, Polygon
@@ -14,6 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from floorplans.importers.draft import RawOpening
 from floorplans.repair_walls import Change, along_across, direction, tidy_point, wall_lines
 from floorplans.walls import TOLERANCE_M, Opening, Wall
+from floorplans.walls import Point as Point2
 
 DOOR_HEAD_M = 2.1
 WINDOW_SILL_M = 0.9
@@ -24,7 +24,10 @@ WINDOW_MATERIAL, WINDOW_THICKNESS_M = "glass", 0.02
 _MAX_SINE = sin(radians(20.0))
 _BESIDE_M = 0.3
 """How far beside its wall's body the middle of an opening may be drawn [m]."""
-_JOIN_M = 0.1
+_FRAME_M = 0.4
+"""How far a gap may go on beyond an opening at each side [m]."""
+_TOUCH_M = 0.05
+_JOIN_M = 0.15
 """Openings of one kind nearer than this are one, such as the leaves of a double door [m]."""
 _ON_EDGE_M = 1e-5
 _MIN_SHARE = 0.5
@@ -39,11 +42,54 @@ class Hung:
     changes: tuple[Change, ...]
 
 
+def join_leaves(openings: Sequence[RawOpening]) -> list[RawOpening]:
+    """Make one opening of those of one kind that lie next to each other, as double doors do.
+
+    Parameters
+    ----------
+    openings : sequence of RawOpening
+        Those of unknown direction stay as they are.
+    """
+    joined: list[RawOpening] = []
+    for opening in openings:
+        new = opening
+        for other in [*joined]:
+            both = _joined(new, other)
+            if both is not None:
+                joined.remove(other)
+                new = both
+        joined.append(new)
+    return joined
+
+
+def _joined(a: RawOpening, b: RawOpening) -> RawOpening | None:
+    """One opening in place of two that lie next to each other; None where they do not."""
+    if a.direction is None or b.direction is None or _kind(a) != _kind(b):
+        return None
+    along = Wall(a.centre, _onward(a.centre, a.direction), "", 1.0, 1.0)
+    s, across = along_across(along, b.centre)
+    reach_m = (a.width_m + b.width_m) / 2
+    if not _parallel(b, along) or abs(across) > _JOIN_M or abs(s) > reach_m + _JOIN_M:
+        return None
+    low = min(-a.width_m, 2 * s - b.width_m) / 2
+    high = max(a.width_m, 2 * s + b.width_m) / 2
+    return replace(a, centre=along.point_at((low + high) / 2), width_m=high - low)
+
+
+def _kind(opening: RawOpening) -> tuple[object, ...]:
+    return (opening.kind, opening.sill_m, opening.head_m, opening.material, opening.thickness_m)
+
+
+def _onward(point: Point2, direction: Point2) -> Point2:
+    length = hypot(*direction)
+    return (point[0] + direction[0] / length, point[1] + direction[1] / length)
+
+
 def bridge(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall, ...]:
     """Fill the gaps of walls that are broken at their doors and windows.
 
-    A gap is filled where an opening stands between the ends of two walls in one line; the filling
-    looks like the longer of them.
+    A gap is filled where an opening reaches from the end of a wall to the next wall in the same
+    line, or to one across it; the filling looks like the longest of the walls in line.
 
     Parameters
     ----------
@@ -57,13 +103,12 @@ def bridge(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall,
     """
     if not walls:
         return ()
-    lines = wall_lines(walls)
-    tree = shapely.STRtree(lines)
+    tree = shapely.STRtree(wall_lines(walls))
     thickest_m = max(wall.thickness_m for wall in walls)
     fillings: list[Wall] = []
     for opening in openings:
         far_m = opening.width_m / 2 + thickest_m + _BESIDE_M
-        near = tree.query(Point(opening.centre), "dwithin", distance=far_m).tolist()
+        near = sorted(tree.query(Point(opening.centre), "dwithin", distance=far_m).tolist())
         filling = _filling(opening, [walls[i] for i in near])
         if filling is not None:
             fillings.append(filling)
@@ -71,23 +116,58 @@ def bridge(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall,
 
 
 def _filling(opening: RawOpening, near: Sequence[Wall]) -> Wall | None:
-    """Wall between the two ends an opening stands between; None where it stands in a wall."""
-    walls = [wall for wall in near if _parallel(opening, wall)]
-    if any(_holds(wall, opening) for wall in walls):
+    """Wall in the gap that an opening fills; None where it stands in a wall or in no gap."""
+    if any(_parallel(opening, wall) and _holds(wall, opening) for wall in near):
         return None
-    best: Wall | None = None
-    for a, b in product(walls, walls):
-        if a is b or a.length_m < b.length_m or not _one_line(a, b):
-            continue
-        start, end = min(product((a.start, a.end), (b.start, b.end)), key=lambda e: dist(*e))
-        gap = replace(a, start=start, end=end, openings=())
-        if (
-            gap.length_m > TOLERANCE_M
-            and _between(gap, opening)
-            and (best is None or gap.length_m < best.length_m)
-        ):
-            best = gap
-    return best
+    in_line = [wall for wall in near if _parallel(opening, wall) and _beside(wall, opening)]
+    for wall in sorted(in_line, key=lambda wall: -wall.length_m):
+        s, _ = along_across(wall, opening.centre)
+        spans = [span for other in near if (span := _contact(wall, other)) is not None]
+        left = max((span for span in spans if span.high <= s), key=lambda c: c.high, default=None)
+        right = min((span for span in spans if span.low >= s), key=lambda c: c.low, default=None)
+        slack_m = opening.width_m / 2 + _FRAME_M
+        if left and right and s - left.high <= slack_m and right.low - s <= slack_m:
+            start, end = _at(wall, left.gap_after), _at(wall, right.gap_before)
+            filling = replace(wall, start=start, end=end, openings=())
+            return filling if filling.length_m > TOLERANCE_M else None
+    return None
+
+
+@dataclass(frozen=True)
+class _Contact:
+    """Stretch of a line in which another wall stands, and where a gap before and after it ends."""
+
+    low: float
+    high: float
+    gap_before: float
+    gap_after: float
+
+
+def _contact(line: Wall, other: Wall) -> _Contact | None:
+    """Where a wall in line with another one, or across it, stands on the other's line."""
+    ends = [along_across(line, end) for end in (other.start, other.end)]
+    (s0, t0), (s1, t1) = ends
+    if max(abs(t0), abs(t1)) < (line.thickness_m + other.thickness_m) / 2:
+        low, high = min(s0, s1), max(s0, s1)
+        return _Contact(low, high, gap_before=low, gap_after=high)
+    slack_m = other.thickness_m / 2 + _TOUCH_M
+    if min(t0, t1) > slack_m or max(t0, t1) < -slack_m or abs(t1 - t0) < TOLERANCE_M:
+        return None
+    s = s0 + (s1 - s0) * min(max(-t0 / (t1 - t0), 0.0), 1.0)
+    half_m = other.thickness_m / 2
+    return _Contact(s - half_m, s + half_m, gap_before=s, gap_after=s)
+
+
+def _at(wall: Wall, s: float) -> Point2:
+    """Point at a distance along a wall's line, before its start or beyond its end too."""
+    ux, uy = direction(wall)
+    return tidy_point(wall.start[0] + s * ux, wall.start[1] + s * uy)
+
+
+def _beside(wall: Wall, opening: RawOpening) -> bool:
+    """Whether the middle of an opening lies beside a wall's line."""
+    _, across = along_across(wall, opening.centre)
+    return abs(across) <= wall.thickness_m / 2 + _BESIDE_M
 
 
 def _parallel(opening: RawOpening, wall: Wall) -> bool:
@@ -103,27 +183,6 @@ def _holds(wall: Wall, opening: RawOpening) -> bool:
     overlap = min(s + opening.width_m / 2, wall.length_m) - max(s - opening.width_m / 2, 0.0)
     beside = abs(across) <= wall.thickness_m / 2 + _BESIDE_M
     return beside and 0 <= s <= wall.length_m and overlap > _MIN_SHARE * opening.width_m
-
-
-def _one_line(a: Wall, b: Wall) -> bool:
-    """Whether the bodies of two walls lie in one line."""
-    (ux, uy), (vx, vy) = direction(a), direction(b)
-    offsets = [abs(along_across(a, end)[1]) for end in (b.start, b.end)]
-    return (
-        abs(ux * vy - uy * vx) <= _MAX_SINE and max(offsets) < (a.thickness_m + b.thickness_m) / 2
-    )
-
-
-def _between(gap: Wall, opening: RawOpening) -> bool:
-    """Whether an opening fills most of a gap."""
-    s, across = along_across(gap, opening.centre)
-    return (
-        0 < s < gap.length_m
-        and abs(across) <= gap.thickness_m / 2 + _BESIDE_M
-        and _parallel(opening, gap)
-        and opening.width_m <= gap.length_m + 2 * _BESIDE_M
-        and gap.length_m <= opening.width_m + 2 * _BESIDE_M
-    )
 
 
 def hang(walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon) -> Hung:
