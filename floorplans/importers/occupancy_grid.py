@@ -1,0 +1,232 @@
+"""Occupancy grids of ROS map_server, and plain pictures with a scale, read with limits.
+
+A pixel of value v is occupied with the likelihood (255 - v) / 255, or v / 255 where `negate` is
+set; above `occupied_thresh` it is occupied, below `free_thresh` free, and else unknown.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import isfinite
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+from PIL import Image
+
+from floorplans.errors import PlanError, unknown_name
+
+MAX_PIXELS = 16_000_000
+MAX_YAML_BYTES = 65_536
+MODES = ("trinary", "scale", "raw")
+PICTURES = (".pgm", ".png")
+YAMLS = (".yaml", ".yml")
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class MapFacts:
+    """What a map's YAML file tells; the defaults are map_server's.
+
+    Attributes
+    ----------
+    image : str
+        Name of the picture.
+    resolution_m : float
+        Side of a pixel [m].
+    origin : (float, float, float)
+        x, y [m] and yaw [rad] of the picture's lower left corner.
+    negate : bool
+    occupied_thresh, free_thresh : float
+    mode : {"trinary", "scale", "raw"}
+    """
+
+    image: str
+    resolution_m: float
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    negate: bool = False
+    occupied_thresh: float = 0.65
+    free_thresh: float = 0.196
+    mode: str = "trinary"
+
+
+@dataclass(frozen=True)
+class OccupancyGrid:
+    """Which pixels are wall; the first row is the lowest.
+
+    Attributes
+    ----------
+    occupied, free : (n_y, n_x) bool
+        Neither is unknown.
+    facts : MapFacts
+    notes : tuple of str
+    """
+
+    occupied: Mask
+    free: Mask
+    facts: MapFacts
+    notes: tuple[str, ...] = ()
+
+
+def read_grid(path: Path, scale_m: float | None) -> OccupancyGrid:
+    """Read a map from its YAML file, or from its picture with the YAML file of its name beside it.
+
+    Parameters
+    ----------
+    path : Path
+    scale_m : float or None
+        Side of a pixel [m]; it goes before the file's resolution, and is needed where there is no
+        YAML file.
+
+    Returns
+    -------
+    OccupancyGrid
+
+    Raises
+    ------
+    PlanError
+        When a file is missing, of another kind, too large, or does not say what it must.
+    """
+    if scale_m is not None and not (isfinite(scale_m) and scale_m > 0):
+        raise PlanError("expected a length above 0 [m]", ("scale",), scale_m)
+    if path.suffix.lower() in YAMLS:
+        facts, notes = _read_facts(path), ()
+        picture = _picture_of(path, facts.image)
+    else:
+        facts, notes = _facts_beside(path, scale_m)
+        picture = path
+    if scale_m is not None:
+        facts = replace(facts, resolution_m=scale_m)
+    occupied, free = _classified(_read_picture(picture), facts)
+    if not occupied.any():
+        raise PlanError("no pixel is occupied, so there is no wall", origin=str(picture))
+    return OccupancyGrid(occupied[::-1], free[::-1], facts, notes)
+
+
+def _facts_beside(picture: Path, scale_m: float | None) -> tuple[MapFacts, tuple[str, ...]]:
+    beside = [picture.with_suffix(ending) for ending in YAMLS]
+    for path in beside:
+        if path.is_file():
+            facts = _read_facts(path)
+            if Path(facts.image).name == picture.name:
+                return facts, ()
+            note = (
+                f"{path.name} names the picture {facts.image}; it was taken to mean {picture.name}"
+            )
+            return facts, (note,)
+    if scale_m is None:
+        raise PlanError(
+            f"the size of a pixel is not known: there is no {beside[0].name} beside the picture; "
+            "give it, such as --scale 0.05 [m]",
+            origin=str(picture),
+        )
+    return MapFacts(picture.name, scale_m), ()
+
+
+def _picture_of(path: Path, image: str) -> Path:
+    """Path of the picture a YAML file names; it must lie in or below the YAML file's folder."""
+    folder = path.parent.resolve()
+    picture = (folder / image).resolve()
+    if not picture.is_relative_to(folder) or picture.suffix.lower() not in PICTURES:
+        raise PlanError(
+            "expected a .pgm or .png file beside the YAML file", ("image",), image, str(path)
+        )
+    if not picture.is_file():
+        own = [
+            path.with_suffix(ending) for ending in PICTURES if path.with_suffix(ending).is_file()
+        ]
+        hint = f"; {own[0].name} lies beside it: import that file" if own else "; put it there"
+        raise PlanError(
+            f"there is no such file{hint}, or correct image:", ("image",), image, str(path)
+        )
+    return picture
+
+
+def _read_facts(path: Path) -> MapFacts:
+    try:
+        if path.stat().st_size > MAX_YAML_BYTES:
+            raise PlanError("the file is too long to be a map's YAML file", origin=str(path))
+        data: object = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, ValueError, RecursionError, OSError) as error:
+        if isinstance(error, PlanError):
+            raise
+        reason = " ".join(str(error).split())
+        raise PlanError(f"not a map's YAML file: {reason}", origin=str(path)) from error
+    if not isinstance(data, dict):
+        raise PlanError("expected the keys image, resolution and origin", origin=str(path))
+    try:
+        return _facts(cast("Mapping[str, Any]", data))
+    except PlanError as error:
+        raise PlanError(error.problem, error.place, error.value, str(path)) from None
+
+
+def _facts(data: Mapping[str, Any]) -> MapFacts:
+    image = data.get("image")
+    if not isinstance(image, str):
+        raise PlanError("expected the name of the picture", ("image",))
+    mode = data.get("mode", "trinary")
+    if not isinstance(mode, str) or mode not in MODES:
+        raise PlanError(unknown_name("mode", str(mode)[:20], MODES), ("mode",))
+    resolution_m = _number(data.get("resolution"), "resolution")
+    if resolution_m <= 0:
+        raise PlanError("expected a length above 0 [m]", ("resolution",), resolution_m)
+    occupied = _number(data.get("occupied_thresh", 0.65), "occupied_thresh")
+    free = _number(data.get("free_thresh", 0.196), "free_thresh")
+    if not 0 <= free <= occupied <= 1:
+        raise PlanError("expected 0 <= free_thresh <= occupied_thresh <= 1", ("free_thresh",), free)
+    origin = data.get("origin")
+    if not isinstance(origin, list) or len(cast("list[object]", origin)) != 3:
+        raise PlanError("expected [x, y, yaw] in metres and radians", ("origin",))
+    x, y, yaw = (_number(number, "origin") for number in cast("list[object]", origin))
+    negate = bool(_number(data.get("negate", 0), "negate"))
+    return MapFacts(image, resolution_m, (x, y, yaw), negate, occupied, free, mode)
+
+
+def _number(value: object, key: str) -> float:
+    if not isinstance(value, int | float) or not isfinite(value):
+        raise PlanError("expected a finite number", (key,))
+    return float(value)
+
+
+def _read_picture(path: Path) -> Image.Image:
+    """Open a picture, refuse a large one by its header, then decode it."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            picture = Image.open(path, formats=("PPM", "PNG"))
+            if picture.width * picture.height > MAX_PIXELS:
+                raise PlanError(
+                    f"{picture.width} x {picture.height} pixels, at most {MAX_PIXELS} are read; "
+                    "cut out the building or halve the resolution",
+                    origin=str(path),
+                )
+            picture.load()
+    except PlanError:
+        raise
+    except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
+        raise PlanError(f"the picture is too large: {error}", origin=str(path)) from error
+    except (OSError, ValueError, SyntaxError, IndexError, OverflowError) as error:
+        raise PlanError(f"not a picture that can be read: {error}", origin=str(path)) from error
+    return picture
+
+
+def _classified(picture: Image.Image, facts: MapFacts) -> tuple[Mask, Mask]:
+    """Return which pixels are occupied and which are free; the first row is the highest."""
+    seen = np.ones((picture.height, picture.width), dtype=np.bool_)
+    if "A" in picture.getbands():
+        seen = np.asarray(picture.getchannel("A")) > 127
+    if picture.mode.startswith("I"):
+        values = np.asarray(picture, dtype=np.float64) / 65535.0
+    else:
+        values = np.asarray(picture.convert("L"), dtype=np.float64) / 255.0
+    if facts.mode == "raw":
+        likely = values * 2.55
+        seen &= likely <= 1.0
+    else:
+        likely = values if facts.negate else 1.0 - values
+    return seen & (likely > facts.occupied_thresh), seen & (likely < facts.free_thresh)
