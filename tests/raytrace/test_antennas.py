@@ -93,8 +93,8 @@ def test_tables_hold_the_pattern_to_1e_4(antenna: Antenna) -> None:
     s = np.concatenate([around_the_sphere(20_000), np.eye(3), 0.0 - np.eye(3)])
     found = look_up(antenna_tables(antenna), s)
     exact = antenna.amplitudes(s[:, 2], np.arctan2(s[:, 1], s[:, 0]))
-    assert np.abs(found.upright - exact.upright).max() < 2e-4
-    assert np.abs(found.level - exact.level).max() < 2e-4
+    assert np.abs(found.upright - exact.upright).max() < 1e-4
+    assert np.abs(found.level - exact.level).max() < 1e-4
 
 
 def test_tables_close_around_the_vertical() -> None:

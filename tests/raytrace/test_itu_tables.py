@@ -1,9 +1,12 @@
 """The material tables against values published elsewhere, and their ranges of frequencies."""
 
+import re
+from pathlib import Path
+
 import pytest
 
 from raytrace.errors import SceneError
-from raytrace.itu import TABLES
+from raytrace.itu import TABLES, Row
 from raytrace.materials import Dielectric, dielectrics_of, find_material
 
 
@@ -118,3 +121,28 @@ def test_unknown_names_are_refused(name: str, edition: str, message: str) -> Non
 
 def test_every_edition_has_vacuum_and_air() -> None:
     assert all({"vacuum", "air"} <= set(dielectrics_of(edition)) for edition in TABLES)
+
+
+PAGE = (Path(__file__).parents[2] / "docs" / "materials.md").read_text(encoding="utf-8")
+ROW = re.compile(r"^\| `(\w+)` \| (\S+) to (\S+) \| (\S+) \| (\S+) \| (\S+) \| (\S+) \|$", re.M)
+
+
+def rows_on_page() -> list[tuple[str, Row]]:
+    return [(name, Row(*map(float, numbers))) for name, *numbers in ROW.findall(PAGE)]
+
+
+def test_page_shows_every_row_of_the_newest_edition_in_its_order() -> None:
+    newest = [(n, row) for n, rows in TABLES["P.2040-4"].items() for row in rows if n != "vacuum"]
+    assert rows_on_page()[: len(newest)] == newest
+
+
+def test_page_shows_what_the_first_edition_has_otherwise() -> None:
+    first, newest = TABLES["P.2040-1"], TABLES["P.2040-4"]
+    other = [(n, row) for n, rows in first.items() for row in rows if row not in newest[n]]
+    assert rows_on_page()[-len(other) :] == other
+
+
+def test_python_example_of_the_page_runs(capsys) -> None:
+    (example,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+    exec(example, {})
+    assert capsys.readouterr().out.startswith("[")
