@@ -44,7 +44,7 @@ class FlightPlayer:
             show_loop_controls=False,
             stylesheets=WIDGETS,
             sizing_mode="stretch_width",
-            height=72,
+            height=64,
         )
         self._text = pn.pane.HTML("", stylesheets=WIDGETS, sizing_mode="stretch_width")
         self._player.param.watch(self._go, "value")
@@ -60,7 +60,6 @@ class FlightPlayer:
             return
         self._training = training
         self._first = first_frames([flight.steps for flight in flights])
-        self.view.visible = bool(flights)
         if not flights:
             return
         self._episode.options = [flight.episode for flight in flights]
@@ -69,9 +68,16 @@ class FlightPlayer:
             self._player.value = self._player.end
             self._go(None)
 
+    def show(self, wanted: bool) -> None:
+        """Show the player where it is wanted and has flights, and its flight with it."""
+        visible = wanted and self._first.size > 1
+        if visible and not self.view.visible:
+            self._go(None)
+        self.view.visible = visible
+
     def _go(self, _event: Any) -> None:
         """Show the flight and step of the player's frame."""
-        if self._training is None:
+        if self._training is None or self._first.size == 1:
             return
         index, share = place_of(self._first, self._player.value)
         flight = self._training.flights[index]

@@ -34,6 +34,7 @@ from rssnav.figures import AGENT_COLOURS, INK
 from rssnav.map_picture import FREE_WALL, NO_PATH
 
 FONT = "Inter, system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
+QUIET_FOCUS = ":host(:focus:not(:focus-visible)), :focus:not(:focus-visible) { outline: none; }"
 FLOOR = "#fbfaf7"
 PATH_COLOURS = "YlOrRd"
 PATH_RANGE_DB = 30.0
@@ -43,8 +44,6 @@ FADED, PLAIN = 0.35, 1.0
 TRAIL = 120
 """Latest steps of a flight that are drawn strongly."""
 
-_DBM = CustomJSHover(code="return isFinite(value) ? value.toFixed(1) + ' dBm' : 'no path'")
-_NS = CustomJSHover(code="return isFinite(value) ? (1e9 * value).toFixed(1) + ' ns' : 'no path'")
 MARKS = ("source", "start")
 MARK_REACH = 0.03
 """How near to a mark a drag must begin, as a share of the plan's longer side."""
@@ -205,7 +204,7 @@ class MapFigure:
         self._hover = HoverTool(
             renderers=[self._picture],
             tooltips=[],
-            formatters={"@rss": _DBM, "@delay_spread_s": _NS},
+            formatters={"@rss": _written_in("dBm"), "@delay_spread_s": _written_in("ns", 1e9)},
             visible=False,
         )
         self.model.add_tools(self._hover)
@@ -244,7 +243,7 @@ class MapFigure:
     def _draw_marks(self) -> None:
         marks = self.model.scatter(
             "x", "y", source=self._marks, marker="marker", size="size", fill_color="colour",
-            line_color="white", line_width=2,
+            line_color="white", line_width=2, nonselection_alpha=1.0,
         )  # fmt: skip
         tool = PointDrawTool(
             renderers=[marks],  # pyright: ignore[reportArgumentType]
@@ -307,6 +306,7 @@ def _empty_figure() -> figure:
     model = figure(
         sizing_mode="stretch_both",
         min_height=280,
+        stylesheets=[QUIET_FOCUS],
         match_aspect=True,
         tools=[PanTool(), WheelZoomTool(), ResetTool()],
         toolbar_location="right",
@@ -332,6 +332,13 @@ def _layers(radio_map: RadioMap) -> dict[str, NDArray[Any]]:
     layers = {"rss": radio_map.rss_dbm, "path_count": radio_map.path_count}
     spread_s = getattr(radio_map, "delay_spread_s", None)
     return layers if spread_s is None else {**layers, "delay_spread_s": spread_s}
+
+
+def _written_in(unit: str, factor: float = 1.0) -> CustomJSHover:
+    """Write a number under the pointer with a unit; one that is infinite means no path."""
+    return CustomJSHover(
+        code=f"return isFinite(value) ? ({factor!r} * value).toFixed(1) + ' {unit}' : 'no path'"
+    )
 
 
 def _tooltips(radio_map: RadioMap) -> list[tuple[str, str]]:

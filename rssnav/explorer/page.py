@@ -27,7 +27,7 @@ from rssnav.explorer.training import Flight
 from rssnav.explorer.training_panel import TrainingPanel
 
 LOOK_MS = 100
-CELL_TAB = 1
+CELL_TAB, TRAINING_TAB = 1, 2
 PLAN_VIEW, SPACE_VIEW = "Plan", "3D"
 
 
@@ -82,6 +82,7 @@ class Page:
             stylesheets=WIDGETS,
             sizing_mode="stretch_width",
         )
+        self._tabs.param.watch(self._switch_tab, "active")
         self.refresh()
 
     def template(self) -> pn.Template:
@@ -156,16 +157,19 @@ class Page:
     def _show_paths(self) -> None:
         session = self._session
         found, finder = session.paths.latest, session.paths
-        if not self._news.of("paths", session.cell, found, finder.busy, finder.problem):
+        hidden = self._tabs.active == TRAINING_TAB
+        if not self._news.of("paths", session.cell, found, finder.busy, finder.problem, hidden):
             return
         centre = None
         if session.cell is not None:
             i_y, i_x = session.cell
             centre = (float(session.grid.x[i_x]), float(session.grid.y[i_y]))
         self._figure.show_cell(centre, session.settings.cell_size_m)
-        lines = [] if found is None else strongest(found)
-        power_dbm = np.empty(0) if found is None else found.power_dbm[: len(lines)]
-        self._figure.show_paths(lines, power_dbm)
+        if found is None or hidden:
+            self._figure.show_paths([], np.empty(0))
+        else:
+            lines = strongest(found)
+            self._figure.show_paths(lines, found.power_dbm[: len(lines)])
         self._cell_panel.show()
         self._show_space()
 
@@ -175,13 +179,18 @@ class Page:
         if self._news.of("training", training, complete, *how_far):
             self._training_panel.show()
             self._player.follow(training)
-            if training is None:
-                self._figure.hide_flight()
+            self._switch_tab(None)
 
     def _show_flight(self, flight: Flight, step: int) -> None:
         training = self._session.training
         if training is not None:
             self._figure.show_flight(flight.position, step, training.settings.agent)
+
+    def _switch_tab(self, _event: Any) -> None:
+        """Show flights while the training is looked at, and paths otherwise."""
+        self._player.show(self._tabs.active == TRAINING_TAB)
+        if not self._player.view.visible:
+            self._figure.hide_flight()
 
     def _switch_view(self, event: Any) -> None:
         """Show the plan or the building in three dimensions."""

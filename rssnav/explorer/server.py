@@ -1,12 +1,15 @@
 """The server: one application, a session a tab, and only those let in who should be."""
 
+import asyncio
 import socket
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from ipaddress import ip_address
+from typing import Any
 
 import panel as pn
+from tornado.websocket import WebSocketClosedError
 
 from floorplans import FloorPlan
 from rssnav.explorer.limits import Limits
@@ -65,6 +68,7 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
     cache = MapCache()
 
     def tab() -> pn.Template:
+        asyncio.get_running_loop().set_exception_handler(_report)
         session = Session(plan, settings.limits, cache)
         pn.state.on_session_destroyed(lambda _context: session.close())
         return page_of(session, pn.state.add_periodic_callback)
@@ -84,6 +88,12 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
         show=settings.show,
         verbose=False,
     )
+
+
+def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Report what goes wrong between requests, but not that a tab was closed on a message."""
+    if not isinstance(context.get("exception"), WebSocketClosedError):
+        loop.default_exception_handler(context)
 
 
 def host_names(address: str) -> tuple[str, ...]:

@@ -56,7 +56,7 @@ class TrainingPanel:
             pn.FlexBox(*self._inputs.values(), gap="0px 8px"),
             pn.Card(
                 pn.FlexBox(*self._learning.values(), gap="0px 8px"),
-                title="Parameters of Q-learning",
+                header=pn.pane.HTML("Parameters of Q-learning", stylesheets=WIDGETS),
                 collapsed=True,
                 stylesheets=WIDGETS,
                 sizing_mode="stretch_width",

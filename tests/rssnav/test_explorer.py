@@ -1,0 +1,412 @@
+"""What a tab of the explorer does, without a browser."""
+
+from __future__ import annotations
+
+import socket
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from threading import Event
+
+import numpy as np
+import pytest
+from cli_plans import run
+
+import floorplans
+import rssnav
+from floorplans import PlanError
+from raytrace import RadioMap, TraceConfig
+from rssnav.explorer.background import NewestOnly, SupersededError
+from rssnav.explorer.cell_panel import page_3d, strongest
+from rssnav.explorer.downloads import figure_file, file_name, map_file, plan_file
+from rssnav.explorer.flight_player import FRAMES, first_frames, place_of
+from rssnav.explorer.limits import Limits
+from rssnav.explorer.map_figure import path_colours
+from rssnav.explorer.page import News
+from rssnav.explorer.server import host_names, with_port
+from rssnav.explorer.session import Session, suggested_goal_dbm
+from rssnav.explorer.tracing import MapCache, MapSettings
+from rssnav.explorer.training import LiveTraining, TrainingSettings, kept_episodes
+from rssnav.explorer.training_panel import running_mean
+from rssnav.explorer.uploads import read_upload
+from rssnav.maps import make_map
+
+FLAT = floorplans.load("flat")
+TOML = floorplans.dumps(FLAT)
+COARSE = MapSettings(cell_size_m=1.5, max_reflections=2)
+PATIENCE_S = 60.0
+CACHE = MapCache(size=8)
+
+
+def wait_for(condition) -> None:
+    """Wait until a condition holds; fail where it does not in time."""
+    ends_s = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < ends_s, "waited in vain"
+        time.sleep(0.005)
+
+
+def wait_for_map(session: Session) -> None:
+    wait_for(lambda: session.complete_map is not None and session.maps.progress is None)
+
+
+@pytest.fixture
+def session() -> Iterator[Session]:
+    """A session of the flat with coarse cells, its map complete."""
+    opened = Session(FLAT, cache=CACHE)
+    opened.change_settings(COARSE)
+    wait_for_map(opened)
+    yield opened
+    opened.close()
+
+
+def test_newest_job_takes_the_place_of_older_ones() -> None:
+    done, begun, thread = [], Event(), NewestOnly("test")
+
+    def endless(ticket) -> None:
+        begun.set()
+        while True:
+            ticket.check()
+
+    thread.submit(endless)
+    begun.wait(PATIENCE_S)
+    for number in range(3):
+        thread.submit(lambda _ticket, number=number: done.append(number))
+    wait_for(lambda: done and done[-1] == 2)
+    thread.close()
+    thread.submit(lambda _ticket: done.append("late"))
+    thread.join(PATIENCE_S)
+    assert done[-1] == 2
+
+
+def test_a_job_that_fails_is_logged_and_ends_no_other(caplog) -> None:
+    done, thread = Event(), NewestOnly("test")
+
+    def failing(_ticket) -> None:
+        raise ZeroDivisionError
+
+    thread.submit(failing)
+    wait_for(lambda: "a job of test failed" in caplog.text)
+    thread.submit(lambda _ticket: done.set())
+    assert done.wait(PATIENCE_S)
+    thread.close()
+
+
+def test_a_cancelled_ticket_stops_a_map() -> None:
+    """The tracer gives up its threads when its progress is answered by an error."""
+
+    def progress(done: int, _total: int) -> None:
+        if done == 1:
+            raise SupersededError
+
+    with pytest.raises(SupersededError):
+        make_map(FLAT, cell_size_m=3.0, config=TraceConfig(1, 1), progress=progress)
+
+
+def test_map_is_the_one_that_the_command_line_makes(session) -> None:
+    traced = session.complete_map
+    made = make_map(session.plan, cell_size_m=1.5, config=TraceConfig(2, 1))
+    assert traced.radio_map.plan_sha256 == session.plan.sha256
+    np.testing.assert_array_equal(traced.radio_map.rss_dbm, made.rss_dbm)
+    np.testing.assert_array_equal(traced.radio_map.path_count, made.path_count)
+
+
+def test_last_map_stays_until_the_new_one_is_there(session) -> None:
+    before = session.maps.latest
+    session.move_source(7.3, 2.2)
+    assert session.complete_map is None
+    seen = [before]
+    while session.complete_map is None:
+        assert session.maps.latest is not None
+        seen += [session.maps.latest] if session.maps.latest is not seen[-1] else []
+    assert [traced.complete for traced in seen[:2]] == [True, False]
+    assert session.complete_map.radio_map.transmitter.position == (7.3, 2.2, FLAT.source[2])
+
+
+def test_a_preview_has_reflections_only_and_is_no_complete_map(session) -> None:
+    session.preview_source(6.0, 2.0)
+    wait_for(lambda: not session.maps.latest.complete)
+    assert session.maps.latest.radio_map.config.max_diffractions == 0
+    assert session.plan.source == FLAT.source
+    session.preview_source(-6.0, 2.0)
+    session.move_source(*FLAT.source[:2])
+    wait_for_map(session)
+
+
+def test_start_snaps_to_a_cell_centre_and_keeps_the_map(session) -> None:
+    before = session.maps.latest
+    session.move_start(5.1, 7.2)
+    assert session.plan.start == (5.25, 6.75)
+    assert session.maps.latest is before
+    assert session.complete_map.radio_map.plan_sha256 == session.plan.sha256
+
+
+@pytest.mark.parametrize(("x", "y"), [(-3.0, 2.0), (5.0, 4.0)], ids=["outside", "in a wall"])
+def test_source_stays_where_it_was_when_it_cannot_be_there(session, x, y) -> None:
+    session.move_source(x, y)
+    assert "source" in session.problem
+    assert session.plan.source == FLAT.source
+    wait_for_map(session)
+
+
+def test_paths_of_a_cell_add_up_to_the_map(session) -> None:
+    session.choose_cell(9.6, 1.4)
+    wait_for(lambda: session.paths.latest is not None)
+    found, radio_map = session.paths.latest, session.complete_map.radio_map
+    i_y, i_x = session.cell
+    assert found.receiver[:2] == (radio_map.grid.x[i_x], radio_map.grid.y[i_y])
+    assert abs(found.receiver[0] - 9.6) <= 0.75
+    assert len(found.paths) == radio_map.path_count[i_y, i_x]
+    assert found.rss_dbm == pytest.approx(radio_map.rss_dbm[i_y, i_x], abs=1e-9)
+    assert 0.0 < found.delay_spread_s <= np.ptp(found.paths.delay_s)
+    for line in strongest(found):
+        assert line[-1] == pytest.approx(found.receiver)
+    session.choose_cell(-5.0, 0.0)
+    assert session.cell is None
+    assert session.paths.latest is None
+
+
+def test_tabs_share_maps_and_nothing_else(session) -> None:
+    cache = MapCache()
+    one, two = Session(FLAT, cache=cache), Session(FLAT, cache=cache)
+    for opened in (one, two):
+        opened.change_settings(COARSE)
+        wait_for_map(opened)
+    assert one.maps.latest is two.maps.latest
+    one.move_source(6.0, 2.0)
+    assert two.plan.source == FLAT.source
+    assert two.complete_map is not None
+    for opened in (one, two):
+        opened.close()
+
+
+def test_cache_forgets_the_oldest() -> None:
+    cache, plan = MapCache(size=2), FLAT
+    traced = [replace_settings(plan, reflections) for reflections in range(3)]
+    for item in traced:
+        cache.put(item)
+    assert cache.get(plan, traced[0].settings) is None
+    assert cache.get(plan, traced[2].settings) is traced[2]
+
+
+def replace_settings(plan, reflections):
+    """Stand-in for a map, told apart by its reflections."""
+    from rssnav.explorer.tracing import TracedMap
+
+    return TracedMap(plan, MapSettings(max_reflections=reflections), None, True)
+
+
+def test_limits_name_what_would_be_right(session) -> None:
+    before = session.settings
+    session.change_settings(replace(before, cell_size_m=0.05))
+    assert "cells of at least" in session.problem
+    assert session.settings == before
+    session.change_settings(replace(before, height_m=3.0))
+    assert "below 2.6 m" in session.problem
+    with pytest.raises(PlanError, match="at most 2"):
+        Session(FLAT, Limits(walls=2))
+
+
+def test_a_map_that_takes_too_long_is_given_up() -> None:
+    opened = Session(FLAT, Limits(map_s=0.0))
+    wait_for(lambda: opened.maps.problem)
+    assert "takes longer than 0 s" in opened.maps.problem
+    opened.close()
+
+
+def test_uploaded_plan_is_opened(session) -> None:
+    session.upload("mine.toml", TOML.replace('"flat"', '"my flat"').encode())
+    wait_for(session.take_upload)
+    assert session.plan.name == "my flat"
+    wait_for_map(session)
+
+
+BAD_UPLOADS = {
+    "another kind": ("plan.exe", b"MZ", "ends in"),
+    "a map that names a picture": ("map.yaml", b"image: /etc/hostname", "ends in"),
+    "no text": ("a.toml", b"\xff\xfe\x00", "UTF-8"),
+    "no TOML": ("a.toml", b"name = ", "TOML"),
+    "too deep": ("a.toml", b"a = " + b"[" * 50_000, "TOML|deep"),
+    "a file to follow": ("a.toml", b'include = "/etc/hostname"\n' + TOML.encode(), "include"),
+    "too large": ("a.toml", b"#" * 9_000_000, "at most"),
+    "folders in the name": ("../../a.exe", b"", "^a.exe"),
+    "broken drawing": ("a.dxf", b"no drawing", "dxf"),
+}
+
+
+@pytest.mark.parametrize(("name", "content", "says"), BAD_UPLOADS.values(), ids=BAD_UPLOADS)
+def test_upload_that_is_refused(name, content, says) -> None:
+    with pytest.raises(PlanError, match=says):
+        read_upload(name, content)
+
+
+def test_walls_of_an_upload_are_counted_before_they_are_checked() -> None:
+    rows = "".join(f"[{x}, 0], " for x in range(3000))
+    text = TOML + f'\n[[walls]]\npoints = [{rows}]\nmaterial = "nonsense"\n'
+    with pytest.raises(PlanError, match="at most 1500"):
+        read_upload("a.toml", text.encode())
+
+
+def test_refused_upload_leaves_the_plan(session) -> None:
+    session.upload("a.toml", b"name = ")
+    wait_for(session.take_upload)
+    assert "TOML" in session.problem
+    assert session.plan.name == "flat"
+
+
+@pytest.mark.parametrize("agent", ["rss", "location"])
+def test_training_is_the_one_that_train_makes(session, agent) -> None:
+    traced = session.complete_map
+    settings = TrainingSettings(agent, episodes=300, seed=4, goal_rss_dbm=-45.0)
+    live = LiveTraining(traced, settings)
+    live.start()
+    live.join(PATIENCE_S)
+    assert not live.problem
+    world = rssnav.GridWorld.from_map(session.plan, traced.radio_map, 1)
+    result = rssnav.train(world, settings.agent_itself(), runs=1, episodes=300, seed=4)
+    np.testing.assert_array_equal(live.steps, result.steps[0])
+    assert (live.converged_episode or -1) == result.converged_episode[0]
+    assert [flight.episode for flight in live.flights] == kept_episodes(300).tolist()
+    for flight in live.flights:
+        assert flight.steps == result.steps[0, flight.episode - 1]
+        assert tuple(flight.position[0]) == session.plan.start
+        assert flight.reached
+        assert np.abs(np.diff(flight.position, axis=0)).max() <= 1.5
+
+
+def test_training_stops_when_told_and_when_the_source_moves(session) -> None:
+    endless = TrainingSettings("location", episodes=20_000)
+    session.train(endless)
+    first = session.training
+    wait_for(lambda: first.steps.size > 0)
+    session.stop_training()
+    first.join(PATIENCE_S)
+    assert 0 < first.steps.size < 20_000
+    session.train(endless)
+    second = session.training
+    session.move_source(6.0, 2.0)
+    second.join(PATIENCE_S)
+    assert session.training is None
+    session.train(endless)
+    assert "not complete" in session.problem
+
+
+def test_training_says_why_it_cannot_begin(session) -> None:
+    session.train(TrainingSettings(goal_rss_dbm=20.0))
+    session.training.join(PATIENCE_S)
+    assert "RSS > 20 dBm" in session.training.problem
+
+
+def test_downloads_are_what_the_page_shows(session, tmp_path) -> None:
+    session.move_start(5.1, 7.2)
+    traced = session.complete_map
+    (tmp_path / "map.h5").write_bytes(map_file(traced))
+    loaded = RadioMap.load(tmp_path / "map.h5")
+    assert loaded.plan_sha256 == session.plan.sha256
+    np.testing.assert_array_equal(loaded.rss_dbm, traced.radio_map.rss_dbm)
+    assert floorplans.loads(plan_file(session).decode()) == session.plan
+    assert figure_file(traced, ".png").startswith(b"\x89PNG")
+    assert b"<svg" in figure_file(traced, ".svg")
+
+
+@pytest.mark.parametrize(
+    ("plan_name", "expected"),
+    [("flat", "flat.h5"), ("../a b/ü", "a-b.h5"), ("///", "plan.h5")],
+)
+def test_names_of_downloads_are_harmless(plan_name, expected) -> None:
+    assert file_name(plan_name, ".h5") == expected
+
+
+def test_view_in_space_runs_scripts_without_the_page(session) -> None:
+    session.choose_cell(9.6, 1.4)
+    wait_for(lambda: session.paths.latest is not None)
+    html = page_3d(session.plan, session.paths.latest)
+    assert html.startswith('<iframe title="3D" sandbox="allow-scripts" srcdoc="')
+    assert html.count("<") == 2  # everything else is escaped
+
+
+def test_kept_episodes_begin_densely_and_end_with_the_last() -> None:
+    assert kept_episodes(7).tolist() == [1, 2, 3, 4, 5, 6, 7]
+    many = kept_episodes(20_000)
+    assert many[:5].tolist() == [1, 2, 3, 4, 5]
+    assert many[-1] == 20_000
+    assert many.size <= 200
+    assert np.all(np.diff(many) > 0)
+
+
+def test_frames_lead_through_every_flight() -> None:
+    steps = [0, 3, 500]
+    first = first_frames(steps)
+    assert first.tolist() == [0, 1, 5, 5 + FRAMES]
+    places = [place_of(first, frame) for frame in range(first[-1])]
+    assert [index for index, _ in places] == [0, *[1] * 4, *[2] * FRAMES]
+    shown = [round(share * steps[index]) for index, share in places]
+    assert shown[:5] == [0, 0, 1, 2, 3]
+    assert shown[5] == 0
+    assert shown[-1] == 500
+
+
+def test_running_mean_is_the_mean_of_the_latest() -> None:
+    values = np.arange(40, dtype=np.int32) ** 2
+    expected = [values[max(0, k - 24) : k + 1].mean() for k in range(40)]
+    np.testing.assert_allclose(running_mean(values, 25), expected)
+    assert running_mean(np.empty(0, np.int32), 25).size == 0
+
+
+def test_path_colours_darken_with_power() -> None:
+    strong, weak, weaker = path_colours(np.array([-40.0, -70.0, -170.0]))
+    assert weak == weaker
+    brightness = [sum(bytes.fromhex(colour[1:])) for colour in (strong, weak)]
+    assert brightness[0] < brightness[1]
+    assert path_colours(np.empty(0)) == []
+
+
+def test_goal_suits_the_map(session) -> None:
+    radio_map = session.complete_map.radio_map
+    strongest_dbm = radio_map.rss_dbm.max()
+    assert suggested_goal_dbm(radio_map, strongest_dbm - 5.0) == strongest_dbm - 5.0
+    assert strongest_dbm - 2.0 < suggested_goal_dbm(radio_map, 0.0) < strongest_dbm
+
+
+def test_news_compares_with_the_last_look() -> None:
+    news = News()
+    assert news.of("a", 1, None)
+    assert not news.of("a", 1, None)
+    assert news.of("a", 2, None)
+    assert news.of("b", 2, None)
+
+
+@pytest.mark.parametrize(
+    ("address", "names"),
+    [
+        ("127.0.0.1", ("127.0.0.1", "localhost")),
+        ("localhost", ("127.0.0.1", "localhost")),
+        ("192.0.2.7", ("192.0.2.7",)),
+        ("0.0.0.0", (socket.gethostname(), "127.0.0.1", "localhost")),
+    ],
+)
+def test_only_known_names_are_let_in(address, names) -> None:
+    assert host_names(address) == names
+
+
+def test_allowed_names_get_the_port() -> None:
+    assert with_port(["lab", "lab:80"], 5006) == ["lab:5006", "lab:80"]
+
+
+def test_command_names_the_missing_extra(monkeypatch) -> None:
+    for name in [name for name in sys.modules if name.startswith("rssnav.explorer")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "panel", None)
+    result = run("explore", "--no-browser")
+    assert result.exit_code == 1
+    assert 'pip install "rssnav[explore]"' in result.stderr
+
+
+def test_command_refuses_a_port_in_use() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        result = run("explore", "flat", "--no-browser", "--port", str(taken.getsockname()[1]))
+    assert result.exit_code == 1
+    assert "--port" in result.stderr
