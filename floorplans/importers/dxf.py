@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from floorplans.importers.doubles import without_doubles
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
 from floorplans.importers.dxf_curves import Curve, Swing
 from floorplans.importers.dxf_drawing import Content, load_document, read_content
@@ -34,6 +35,7 @@ from floorplans.importers.dxf_openings import (
 from floorplans.importers.gap_filling import fill_gaps
 from floorplans.importers.hanging import WINDOW_MATERIAL, WINDOW_THICKNESS_M, join_leaves
 from floorplans.importers.material_runs import by_material, without_openings
+from floorplans.importers.squaring import squared
 from floorplans.importers.units import UNITS, check_size, guess_unit, unit_length
 from floorplans.importers.wall_areas import MAX_THICKNESS_M, walls_of_area
 from floorplans.importers.wall_strips import strips_of_lines
@@ -165,6 +167,7 @@ def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[Raw
     openings = as_windows_outside([*openings, *loose], area)
     solid = without_openings(bodies.area, openings)
     walls = walls_of_area(area, _CLOSE_M) if not area.is_empty else []
+    walls = squared(without_doubles(walls))
     return [
         *(piece for wall in walls for piece in by_material(wall, solid)),
         *_single_walls(bodies, area),
@@ -183,12 +186,15 @@ def _bodies(content: Content, layers: Layers) -> _Bodies:
     curves: dict[Material, list[Curve]] = {}
     for layer in layers.of("wall"):
         curves.setdefault(layers.material(layer), []).extend(content.curves[layer])
+    sorted_out = {material: _thin_bodies(chains) for material, chains in curves.items()}
+    faces = shapely.union_all([body for closed, _ in sorted_out.values() for body in closed])
+    beside = faces.buffer(_AT_FACE_M)
     area: dict[Material, BaseGeometry] = {}
     singles: list[tuple[LineString, Material]] = []
-    for material, chains in curves.items():
-        closed, segments = _thin_bodies(chains)
+    for material, (closed, segments) in sorted_out.items():
         walls = strips_of_lines(segments, _PAIR_M)
-        area[material] = shapely.union_all([*closed, *walls.area])
+        strips = [s for s in walls.area if s.difference(beside).area > s.area / 2]
+        area[material] = shapely.union_all([*closed, *strips])
         singles += [(LineString(ends), material) for ends in walls.singles]
     return _Bodies(area, tuple(singles))
 

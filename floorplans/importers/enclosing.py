@@ -62,8 +62,8 @@ def enclose(walls: Sequence[Wall], given: Polygon | None, height_m: float) -> St
         for a, b in links
     ]
     closing = [_like_nearest(pieces, a, b) for a, b in links]
-    inside = _inside(pieces, outline, changes)
-    raised = _raised([*inside, *closing], outline, height_m, changes)
+    inside = _inside(split_at_junctions([*pieces, *closing]), outline, changes)
+    raised = _raised(inside, outline, height_m, changes)
     return Storey(outline, raised, tuple(changes))
 
 

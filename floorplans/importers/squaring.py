@@ -1,0 +1,63 @@
+"""Walls turned into the building's own directions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from floorplans.importers.draft import RawWall
+
+_TURN = radians(1.0)
+_SIDEWAYS_M = 0.06
+"""An end is moved at most this far by a turn [m]."""
+
+
+def squared(walls: Sequence[RawWall]) -> list[RawWall]:
+    """Turn walls that nearly have one of the building's two main directions exactly into it.
+
+    The main directions, at right angles, are those of the greatest length of walls; walls turn
+    about their middles.
+
+    Parameters
+    ----------
+    walls : sequence of RawWall
+
+    Returns
+    -------
+    list of RawWall
+        In the order given.
+    """
+    if not walls:
+        return []
+    ends = np.array([(wall.start, wall.end) for wall in walls])
+    steps = ends[:, 1] - ends[:, 0]
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    angles = np.arctan2(steps[:, 1], steps[:, 0])
+    main = _main_direction(angles, lengths)
+    off = (angles - main + np.pi / 4) % (np.pi / 2) - np.pi / 4
+    turned = (np.abs(off) <= _TURN) & (np.abs(off) * lengths / 2 <= _SIDEWAYS_M)
+    halves = np.stack([np.cos(angles - off), np.sin(angles - off)], axis=1) * lengths[:, None] / 2
+    middles = ends.mean(axis=1)
+    return [
+        replace(wall, start=_point(middle - half), end=_point(middle + half)) if turn else wall
+        for wall, turn, middle, half in zip(walls, turned.tolist(), middles, halves, strict=True)
+    ]
+
+
+def _main_direction(angles: NDArray[np.float64], lengths: NDArray[np.float64]) -> float:
+    """Angle in [0, pi / 2) that walls of the greatest length share, up to right angles."""
+    quarter = angles % (np.pi / 2)
+    shares = np.round(quarter / _TURN).astype(int)
+    best = int(np.argmax(np.bincount(shares, lengths)))
+    near = np.abs((quarter - best * _TURN + np.pi / 4) % (np.pi / 2) - np.pi / 4) <= _TURN
+    mean = np.angle(np.sum(lengths[near] * np.exp(4j * quarter[near]))) / 4 % (np.pi / 2)
+    axis = np.round(mean / (np.pi / 2)) * (np.pi / 2)
+    return float(axis if abs(mean - axis) < _TURN / 10 else mean)
+
+
+def _point(xy: NDArray[np.float64]) -> tuple[float, float]:
+    return (float(xy[0]), float(xy[1]))
