@@ -112,6 +112,17 @@ def meaning_of(name: str, layers: Mapping[str, str] | None = None) -> Meaning:
     return Meaning(kind, material if kind == "wall" else None)
 
 
+def material_named(name: str) -> str | None:
+    """Material that a name speaks of, None if it names none we know.
+
+    Examples
+    --------
+    >>> material_named("Stahlbeton C30/37"), material_named("Luft")
+    ('concrete', None)
+    """
+    return _first(_words(name), _MATERIAL_WORDS)
+
+
 def parse_meaning(text: str, name: str) -> Meaning:
     """Read KIND or KIND:MATERIAL as a user writes it for the layer `name`."""
     kind_text, _, material = text.partition(":")

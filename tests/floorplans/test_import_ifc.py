@@ -1,0 +1,225 @@
+"""IFC storeys come in with their walls, layers, openings, slabs and units, or with a clear no."""
+
+from __future__ import annotations
+
+import random
+from contextlib import suppress
+from itertools import pairwise
+from math import hypot, pi
+
+import pytest
+from ifc_models import HOUSE, Model, Point, house
+
+from floorplans import PlanError, loads
+from floorplans.importers import ImportOptions, import_plan
+
+HALL: list[Point] = [(0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0)]
+
+
+def openings_of(plan):
+    """All openings as (kind, width, sill, head), sorted."""
+    found = [o for wall in plan.walls for o in wall.openings]
+    return sorted((o.kind, round(o.width_m, 6), o.sill_m, round(o.head_m, 6)) for o in found)
+
+
+def message_of(path, **options) -> str:
+    with pytest.raises(PlanError) as caught:
+        import_plan(path, ImportOptions(**options))
+    return str(caught.value)
+
+
+@pytest.fixture(scope="module")
+def house_file(tmp_path_factory):
+    """The house in a file; not to be changed."""
+    return house().write(tmp_path_factory.mktemp("ifc") / "house.ifc")
+
+
+def two_storeys(tmp_path, upper: str = "First floor"):
+    model = Model()
+    model.add_storey("Ground floor")
+    model.add_ring(HALL, thickness_m=0.3)
+    model.add_storey(upper, 3.2)
+    model.add_ring(HOUSE, thickness_m=0.2)
+    return model.write(tmp_path / "two.ifc")
+
+
+def test_house_has_its_walls_layers_and_openings(house_file) -> None:
+    plan = import_plan(house_file).plan
+    assert plan.bounds == pytest.approx((0.0, 0.0, 8.0, 5.0))
+    assert plan.height_m == pytest.approx(2.7)
+    assert sorted({(w.material, round(w.thickness_m, 6)) for w in plan.walls}) == [
+        ("brick", 0.3),
+        ("plasterboard", 0.1),
+    ]
+    assert openings_of(plan) == [
+        ("door", 0.9, 0.0, 2.05),
+        ("door", 1.0, 0.0, 2.1),
+        ("window", 1.5, 0.9, 2.2),
+    ]
+    assert (plan.floor_material, plan.ceiling_material) == ("concrete", "concrete")
+
+
+def test_openings_lie_where_they_were_cut(house_file) -> None:
+    plan = import_plan(house_file).plan
+    centres = {
+        (o.kind, *(round(c, 4) for c in wall.point_at(o.offset_m + o.width_m / 2)))
+        for wall in plan.walls
+        for o in wall.openings
+    }
+    assert centres == {("door", 5.0, 0.0), ("door", 3.0, 2.45), ("window", 6.25, 5.0)}
+
+
+def test_unit_of_the_file_changes_nothing(house_file, tmp_path) -> None:
+    in_metres = house(prefix=None).write(tmp_path / "house.ifc")
+    assert import_plan(in_metres).plan == import_plan(house_file).plan
+
+
+def test_written_plan_reads_back_and_tells_what_was_assumed(house_file) -> None:
+    imported = import_plan(house_file)
+    text = imported.toml()
+    assert loads(text) == imported.plan
+    assert "assumed: the file knows no source" in text
+    assert any("several layers" in line for line in imported.report)
+    assert any(line == "layer IfcWall: 5 objects: walls" for line in imported.report)
+
+
+def test_user_says_what_a_material_is(house_file) -> None:
+    options = ImportOptions(layers={"gips*": "wall:wood"})
+    materials = {wall.material for wall in import_plan(house_file, options).plan.walls}
+    assert materials == {"brick", "wood"}
+
+
+@pytest.mark.parametrize("level", ["Ground floor", "ground FLOOR", "0", "0.0"])
+def test_lower_storey_is_chosen(tmp_path, level) -> None:
+    plan = import_plan(two_storeys(tmp_path), ImportOptions(level=level)).plan
+    assert plan.bounds == pytest.approx((0.0, 0.0, 6.0, 4.0))
+
+
+@pytest.mark.parametrize("level", ["First floor", "1", "3.2"])
+def test_upper_storey_is_chosen(tmp_path, level) -> None:
+    plan = import_plan(two_storeys(tmp_path), ImportOptions(level=level)).plan
+    assert plan.bounds == pytest.approx((0.0, 0.0, 8.0, 5.0))
+    assert plan.height_m == pytest.approx(2.7)
+
+
+def test_storeys_are_listed_where_one_must_be_chosen(tmp_path) -> None:
+    path = two_storeys(tmp_path)
+    assert "choose a storey with --level; there are 0: 'Ground floor' at 0.00 m" in message_of(path)
+    assert "1: 'First floor' at 3.20 m with 4 walls" in message_of(path, level="attic")
+    same = two_storeys(tmp_path, "Ground floor")
+    assert "2 storeys of that name" in message_of(same, level="Ground floor")
+
+
+def test_curved_wall_comes_as_chords(tmp_path) -> None:
+    model = Model()
+    model.add_storey("Apse")
+    model.add_wall((-3.0, 0.0), (-3.0, -4.0))
+    model.add_wall((-3.0, -4.0), (3.0, -4.0))
+    model.add_wall((3.0, -4.0), (3.0, 0.0))
+    model.add_curved_wall((0.0, 0.0), 3.0, 0.2, 2.7)
+    plan = import_plan(model.write(tmp_path / "apse.ifc"), ImportOptions(tolerance_m=0.01)).plan
+    assert len(plan.walls) > 10
+    assert plan.outline.area == pytest.approx(24.0 + pi * 9.0 / 2, rel=0.01)
+    assert {round(wall.thickness_m, 2) for wall in plan.walls} == {0.2}
+
+
+def test_wall_at_any_angle(tmp_path) -> None:
+    model = Model()
+    model.add_storey("Hut")
+    corners = [(1.0, 0.0), (6.0, 2.0), (4.5, 6.5), (-1.0, 4.0)]
+    model.add_ring(corners, thickness_m=0.25)
+    plan = import_plan(model.write(tmp_path / "hut.ifc")).plan
+    lengths = [hypot(c[0] - a[0], c[1] - a[1]) for a, c in pairwise(corners)]
+    assert sorted(round(w.length_m, 3) for w in plan.walls)[1:] == pytest.approx(
+        sorted([*lengths, hypot(2.0, 4.0)])[1:], abs=1e-3
+    )
+
+
+def test_low_wall_keeps_its_height_and_hole_without_filling_is_a_passage(tmp_path) -> None:
+    model = Model()
+    model.add_storey("Hall")
+    model.add_ring(HALL)
+    model.add_wall((2.0, 0.0), (2.0, 2.5), height_m=1.1)
+    inner = model.add_wall((4.0, 0.0), (4.0, 4.0))
+    model.add_hole(inner, 1.0, 1.2, 0.0, 2.3)
+    plan = import_plan(model.write(tmp_path / "hall.ifc")).plan
+    assert sorted({round(wall.height_m, 6) for wall in plan.walls}) == [1.1, 2.7]
+    assert openings_of(plan) == [("passage", 1.2, 0.0, 2.3)]
+
+
+def test_curtain_wall_without_material_is_glass(tmp_path) -> None:
+    model = Model()
+    model.add_storey("Hall")
+    model.add_ring(HALL)
+    model.add_wall((3.0, 0.0), (3.0, 4.0), 0.05, ifc_class="IfcCurtainWall")
+    plan = import_plan(model.write(tmp_path / "hall.ifc")).plan
+    assert [(w.material, w.thickness_m) for w in plan.walls if w.material == "glass"] == [
+        ("glass", 0.02)
+    ]
+
+
+def test_rooms_with_different_ceilings_are_refused_with_the_reason(tmp_path) -> None:
+    model = house()
+    for top, (low, high) in ((2.42, (0.0, 3.0)), (2.82, (3.0, 8.0))):
+        corners = [(low, 0.0), (high, 0.0), (high, 5.0), (low, 5.0)]
+        model.add_slab(corners, top, 0.02, ifc_class="IfcCovering", predefined_type="CEILING")
+    path = model.write(tmp_path / "house.ifc")
+    message = message_of(path)
+    assert "rooms have ceilings at 2.40 m to 2.80 m, and a plan has one flat ceiling" in message
+    assert import_plan(path, ImportOptions(height_m=2.6)).plan.height_m == 2.6
+
+
+def test_model_without_unit_needs_one(tmp_path) -> None:
+    model = house()
+    model.units.Units = ()
+    for wanted in ("does not tell its unit of length", "--unit"):
+        assert wanted in message_of(model.write(tmp_path / "house.ifc"))
+    plan = import_plan(tmp_path / "house.ifc", ImportOptions(unit="mm")).plan
+    assert plan.bounds == pytest.approx((0.0, 0.0, 8.0, 5.0))
+
+
+def test_model_in_a_wrong_unit_is_no_building(house_file) -> None:
+    assert "more than a building does" in message_of(house_file, unit="m")
+
+
+def test_model_without_storeys(tmp_path) -> None:
+    model = Model()
+    model.add_ring(HALL)
+    assert "no IfcBuildingStorey" in message_of(model.write(tmp_path / "loose.ifc"))
+
+
+def test_storey_without_walls(tmp_path) -> None:
+    model = Model()
+    model.add_storey("Roof")
+    assert "no storey of the model has walls" in message_of(model.write(tmp_path / "roof.ifc"))
+
+
+def test_files_that_are_no_model(tmp_path, house_file) -> None:
+    path = tmp_path / "plan.ifc"
+    path.write_bytes(b"PK\x03\x04 zipped")
+    assert "does not begin like a IFC model" in message_of(path).replace("an IFC", "a IFC")
+    path.write_text("ISO-10303-21;\nHEADER;\nENDSEC;\nEND-ISO-10303-21;\n")
+    assert "not a readable IFC model" in message_of(path)
+    text = house_file.read_text()
+    path.write_text(text[: len(text) // 2])
+    assert "the file is cut off" in message_of(path)
+    path.write_text(text.replace("IFC4", "IFC9"))
+    assert "not a readable IFC model: Unsupported schema" in message_of(path)
+
+
+def test_mutated_models_never_crash(tmp_path, house_file) -> None:
+    text = house_file.read_bytes()
+    body, end = text[:-30], text[-30:]
+    path = tmp_path / "mutated.ifc"
+    for seed in range(60):
+        rng = random.Random(seed)
+        changed = bytearray(body)
+        for _ in range(rng.choice((1, 2, 5))):
+            at = rng.randrange(300, len(changed) - 20)
+            if rng.random() < 0.6:  # another reference or number
+                changed[at : at + 1] = rng.choice((b"1", b"9", b"0", b"#", b"$", b"-", b"E"))
+            else:
+                del changed[at : at + rng.randrange(1, 9)]
+        path.write_bytes(bytes(changed) + end)
+        with suppress(PlanError):
+            import_plan(path)
