@@ -18,6 +18,8 @@ _BESIDE_M = 1.0
 """How far beside an opening's middle the gap's sides are looked for [m]."""
 _FRAME_M = 0.3
 """How far a gap may go on beyond an opening at each side [m]."""
+_REBATE_M = 0.06
+"""How far the faces of a gap may step back [m]."""
 _STEP_M = 0.02
 _OVER_M = 0.01
 _MIN_SHARE = 0.5
@@ -75,10 +77,17 @@ def _gap(local: BaseGeometry, width_m: float) -> Polygon | None:
     run = _run_nearest_middle(bridged)
     if run is None or run == (0, len(rows)):
         return None
+    middle = min(max(len(rows) // 2, run[0]), run[1] - 1)
+    run = _run_nearest_middle(bridged & _level(sides, middle)) or run
     left, right = np.median(sides[run[0] : run[1]], axis=0)
     low, high = rows[run[0]] - _STEP_M / 2, rows[run[1] - 1] + _STEP_M / 2
     low, high = _exact(local, (float(left), float(right)), (float(low), float(high)))
     return box(left - _OVER_M, low, right + _OVER_M, high)
+
+
+def _level(sides: NDArray[np.float64], middle: int) -> NDArray[np.bool_]:
+    """Rows whose sides are those of the middle one: others lie between other walls."""
+    return np.array((np.abs(sides - sides[middle]) <= _REBATE_M).all(axis=1))
 
 
 def _sides(local: BaseGeometry, row: float, width_m: float) -> tuple[float, float]:
