@@ -1,0 +1,97 @@
+"""FloorPlan -> DXF drawing in metres.
+
+Layers: WALL-MATERIAL holds the outlines of wall bodies, broken at openings as architects draw
+them, with the wall's height as their thickness; DOOR and WINDOW hold a block for each opening; AXIS
+the centre lines. Importing the drawing gives the walls and openings back, but not the heights.
+"""
+
+from __future__ import annotations
+
+from io import StringIO
+from math import atan2, degrees
+from pathlib import Path
+
+import ezdxf
+from ezdxf import units
+from ezdxf.document import Drawing
+from ezdxf.layouts.layout import Modelspace
+
+from floorplans.exporters.formats import ExportOptions, Files
+from floorplans.plan import FloorPlan
+from floorplans.plan_shapes import WallStrips
+from floorplans.walls import Opening, OpeningKind, Wall
+
+LAYERS: dict[OpeningKind, str] = {"door": "DOOR", "window": "WINDOW", "passage": "DOOR-PASSAGE"}
+
+_MIN_THICKNESS_M = 0.001
+_RED, _BLUE, _GREEN, _GREY, _MAGENTA = 1, 5, 3, 8, 6
+
+
+def render_dxf(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
+    """Render a plan as one DXF drawing."""
+    document = ezdxf.new("R2010", setup=True)  # pyright: ignore[reportPrivateImportUsage]
+    document.units = units.M
+    _add_layers(document, plan)
+    _add_blocks(document)
+    space = document.modelspace()
+    strips = WallStrips(plan, _MIN_THICKNESS_M)
+    for wall in plan.walls:
+        _draw_wall(space, wall, strips)
+        for opening in wall.openings:
+            _insert(space, wall, opening)
+    space.add_point(plan.source, dxfattribs={"layer": "SOURCE"})
+    space.add_point(plan.start, dxfattribs={"layer": "START"})
+    text = StringIO()
+    document.write(text)
+    return {path.name: text.getvalue().encode(document.output_encoding, "dxfreplace")}
+
+
+def wall_layer(material: str) -> str:
+    """Return the layer of walls of a material."""
+    return f"WALL-{material.upper()}"
+
+
+def _add_layers(document: Drawing, plan: FloorPlan) -> None:
+    materials = dict.fromkeys(wall.material for wall in plan.walls)
+    names = {wall_layer(material): 7 for material in materials}
+    names |= {"DOOR": _RED, "DOOR-PASSAGE": _GREEN, "WINDOW": _BLUE, "AXIS": _GREY}
+    for name, colour in {**names, "SOURCE": _MAGENTA, "START": _MAGENTA}.items():
+        document.layers.add(name, color=colour)
+
+
+def _add_blocks(document: Drawing) -> None:
+    """Make blocks of 1 m x 1 m that an insert stretches: x along the wall, y across it."""
+    door = document.blocks.new("DOOR")
+    door.add_line((0, 0), (0, 1))
+    door.add_arc((0, 0), 1, 0, 90)
+    box = [(0, -0.5), (1, -0.5), (1, 0.5), (0, 0.5)]
+    window = document.blocks.new("WINDOW")
+    window.add_lwpolyline(box, close=True)
+    window.add_line((0, 0), (1, 0))
+    document.blocks.new("DOOR-PASSAGE").add_lwpolyline(box, close=True)
+
+
+def _draw_wall(space: Modelspace, wall: Wall, strips: WallStrips) -> None:
+    for corners in strips.strips(wall):
+        space.add_lwpolyline(
+            corners.tolist(),
+            close=True,
+            dxfattribs={"layer": wall_layer(wall.material), "thickness": wall.height_m},
+        )
+    space.add_line(wall.start, wall.end, dxfattribs={"layer": "AXIS"})
+
+
+def _insert(space: Modelspace, wall: Wall, opening: Opening) -> None:
+    """Insert an opening's block; a door's keeps its round swing, the others fill the wall."""
+    (x0, y0), (x1, y1) = wall.start, wall.end
+    across_m = opening.width_m if opening.kind == "door" else wall.thickness_m
+    space.add_blockref(
+        LAYERS[opening.kind],
+        wall.point_at(opening.offset_m),
+        dxfattribs={
+            "layer": LAYERS[opening.kind],
+            "xscale": opening.width_m,
+            "yscale": across_m,
+            "rotation": degrees(atan2(y1 - y0, x1 - x0)),
+        },
+    )
