@@ -25,8 +25,8 @@ TOLERANCE_DEG = 1e-6
 class PatternTable:
     """An antenna whose field is known on a grid of directions, interpolated linearly between.
 
-    Amplitudes are relative to a 0 dBi radiator: |e_theta|^2 + |e_phi|^2 is the gain. Nothing is
-    normalised; `mean_gain` of a lossless antenna is 1.
+    Amplitudes are relative to a 0 dBi radiator: the sum of their squared
+    magnitudes is the gain. Nothing is normalised; `mean_gain` of a lossless antenna is 1.
 
     Attributes
     ----------

@@ -1,0 +1,51 @@
+"""
+Two agents learn to find a phone
+================================
+
+One agent knows only the RSS it reads. The other knows where it is, and where the phone is. Both
+learn by Q-learning, from the same start, twenty times over with independent random numbers.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import floorplans
+import rssnav
+from rssnav.figures import AGENT_COLOURS, PAGE_IN, STYLE, draw_flight
+from rssnav.map_picture import draw_radio_map
+from rssnav.maps import make_map
+
+plt.rcParams.update(STYLE)
+
+plan = floorplans.load("flat")
+radio_map = make_map(plan)
+world = rssnav.GridWorld.from_map(plan, radio_map)
+agents = (rssnav.RssAgent(terminal_dbm=-30.0), rssnav.LocationAgent())
+results = [rssnav.train(world, agent, runs=20, episodes=1000) for agent in agents]
+
+# %%
+# An agent that knew everything would take the fewest steps that are possible. The two agents end
+# at different cells, the first above -30 dBm and the second within 2 m of the source, so each has
+# its own fewest.
+figure, (left, right) = plt.subplots(1, 2, figsize=(PAGE_IN, 2.4), layout="constrained")
+for agent, result in zip(agents, results, strict=True):
+    colour = AGENT_COLOURS[agent.name]
+    terminal = agent.decision_process(world, result.learning).terminal
+    fewest = rssnav.shortest_path(world, terminal).steps
+    print(
+        f"{agent.name:8} {result.path_steps.mean():.1f} steps in the end, fewest possible {fewest}"
+    )
+    episode = np.arange(1, result.steps.shape[1] + 1)
+    left.loglog(
+        episode, result.steps.mean(axis=0), color=colour, lw=0.8, label=f"{agent.name} agent"
+    )
+    left.axhline(fewest, color=colour, ls=":")
+left.set_xlabel("episode")
+left.set_ylabel("steps, mean of 20 runs")
+left.legend()
+
+draw_radio_map(plan, radio_map, right).set_alpha(0.75)
+for agent, result in zip(agents, results, strict=True):
+    draw_flight(right, result.trajectory_m(0), agent.name)
+right.set_title("where they fly in the end")
+plt.show()

@@ -1,0 +1,43 @@
+"""
+A flight, step by step
+======================
+
+What ``rssnav fly`` writes as a GIF or MP4: the trained UAV over the map, and the RSS it reads on
+its way. Here it searches the larger building of the paper, four cells a step.
+"""
+
+import matplotlib.pyplot as plt
+from matplotlib.animation import FuncAnimation
+
+import floorplans
+import rssnav
+from raytrace import TraceConfig
+from rssnav.figures import drawing
+from rssnav.flight_movie import Flight, FlightScene
+from rssnav.maps import make_map
+
+plan = floorplans.load("scenario2")
+radio_map = make_map(plan, config=TraceConfig(max_reflections=3, max_diffractions=1))
+world = rssnav.GridWorld.from_map(plan, radio_map, speed=4)
+result = rssnav.train(world, rssnav.LocationAgent(), runs=1, episodes=20_000, until_converged=True)
+
+flight = Flight.of(result)
+print(flight.label)
+
+# %%
+# `FlightScene` draws one picture a step; `rssnav.flight_movie.save_flight_movie` writes them into
+# a file.
+with drawing():
+    scene = FlightScene(plan, radio_map, [flight])
+first = scene.frame(0)
+screen = plt.figure(figsize=(first.shape[1] / 100, first.shape[0] / 100), dpi=100)
+image = screen.figimage(first)
+
+
+def show(step: int) -> None:
+    """Put the picture of a step on the screen."""
+    image.set_data(scene.frame(step))
+
+
+film = FuncAnimation(screen, show, frames=scene.n_steps + 1, interval=200)
+plt.show()
