@@ -63,8 +63,8 @@ def repair_walls(
     Examples
     --------
     >>> wall = Wall((0, 0), (4, 0), "brick", 0.2, 3)
-    >>> repair_walls([wall, Wall((2, 0.03), (2, 5), "brick", 0.2, 3)]).changes[0].text
-    'end of a wall moved 0.03 m, to (2, 0)'
+    >>> repair_walls([wall, Wall((2, 0.03), (2, 5), "brick", 0.2, 3)]).changes[0]
+    Change(kind='moved', text='end of a wall moved 0.03 m', at=(2.0, 0.03), to=(2.0, 0.0))
     """
     mended = tuple(walls)
     changes: list[Change] = []

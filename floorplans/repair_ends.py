@@ -15,7 +15,6 @@ from scipy.sparse.csgraph import connected_components
 from floorplans.repair_walls import (
     Change,
     along_across,
-    at_text,
     line_crossing,
     moved_wall,
     tidy_point,
@@ -198,6 +197,6 @@ def _rebuilt(
         for before, after in zip(old.tolist(), (start, end), strict=True):
             shift_m = hypot(after[0] - before[0], after[1] - before[1])
             if shift_m > TOLERANCE_M:
-                text = f"end of a wall moved {shift_m:.2g} m, to {at_text(after)}"
-                changes.append(Change("moved", text, (before[0], before[1])))
+                text = f"end of a wall moved {shift_m:.2g} m"
+                changes.append(Change("moved", text, (before[0], before[1]), after))
         yield moved_wall([wall], start, end)

@@ -12,7 +12,6 @@ import shapely
 from floorplans.repair_walls import (
     Change,
     along_across,
-    at_text,
     direction,
     moved_wall,
     tidy_point,
@@ -127,10 +126,8 @@ def _one_line(
     walls = [_wall_on(leader, span, owners, pieces) for span, owners in runs]
     if _same(walls, group):
         return list(group)
-    x, y = walls[0].start
-    ends = f"{at_text(walls[0].start)} to {at_text(walls[-1].end)}"
-    text = f"{len(group)} walls in one line made {len(walls)}, {ends}"
-    changes.append(Change("joined", text, (x, y)))
+    text = f"{len(group)} walls in one line made {len(walls)}"
+    changes.append(Change("joined", text, walls[0].start, walls[-1].end))
     return walls
 
 

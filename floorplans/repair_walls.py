@@ -28,15 +28,19 @@ class Change:
         What was done.
     at : (float, float)
         Where, (x, y) [m].
+    to : (float, float) or None
+        The other end of what was done [m].
     """
 
     kind: str
     text: str
     at: Point
+    to: Point | None = None
 
     def __str__(self) -> str:
         """Say where, and what was done."""
-        return f"{at_text(self.at)}: {self.text}"
+        where = at_text(self.at) if self.to is None else f"{at_text(self.at)} to {at_text(self.to)}"
+        return f"{where}: {self.text}"
 
 
 def at_text(point: Point) -> str:

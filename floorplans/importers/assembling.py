@@ -179,7 +179,10 @@ def _moved(
     shift = np.array([d_x, d_y])
     outline = shapely.transform(storey.outline, lambda xy: (xy + shift).round(7))
     walls = tuple(replace(wall, start=to(wall.start), end=to(wall.end)) for wall in storey.walls)
-    changes = tuple(replace(change, at=to(change.at)) for change in storey.changes)
+    changes = tuple(
+        replace(change, at=to(change.at), to=to(change.to) if change.to else None)
+        for change in storey.changes
+    )
     return (
         Storey(outline, walls, changes),
         [replace(opening, centre=to(opening.centre)) for opening in openings],

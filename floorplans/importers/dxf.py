@@ -50,6 +50,7 @@ _PAIR_M = 0.6
 _CLOSE_M = 0.02
 _IN_WALL_M = 0.05
 _AT_FACE_M = 0.12
+_CROSSING_M = 1.0
 _MIN_SINGLE_M = 0.3
 
 _INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 14: "dm"}
@@ -261,13 +262,20 @@ def _stands(opening: RawOpening, area: BaseGeometry) -> bool:
     return in_wall or bool(fill_gaps(area, [opening]))
 
 
+def _outside(line: LineString, area: BaseGeometry) -> BaseGeometry:
+    """Line without the stretches along which it runs inside an area, short crossings aside."""
+    inside = shapely.get_parts(line.intersection(area))
+    along = [part for part in inside if part.length > min(_CROSSING_M, 0.9 * line.length)]
+    return line.difference(shapely.union_all(along).buffer(_IN_WALL_M / 10))
+
+
 def _glass_walls(lines: Sequence[LineString], area: BaseGeometry) -> list[RawWall]:
     """Walls of glass on single lines, and between two lines that face each other.
 
-    What lies in other walls or on their faces is left out.
+    What runs in other walls or on their faces is left out; a pane may cross them.
     """
     wide = area.buffer(_IN_WALL_M)
-    parts = shapely.get_parts([line.difference(wide) for line in lines])
+    parts = shapely.get_parts([_outside(line, wide) for line in lines])
     chains = [shapely.get_coordinates(part) for part in parts if part.length > _MIN_SINGLE_M]
     if not chains:
         return []

@@ -15,7 +15,7 @@ from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
 from floorplans.repair import split_at_junctions
-from floorplans.repair_walls import Change, at_text, direction, tidy_point, wall_lines
+from floorplans.repair_walls import Change, direction, tidy_point, wall_lines
 from floorplans.walls import TOLERANCE_M, Wall
 
 _GAPS_M = (0.0, 0.3, 1.0, 2.0, 4.0, 8.0)
@@ -58,8 +58,7 @@ def enclose(walls: Sequence[Wall], given: Polygon | None, height_m: float) -> St
     pieces = split_at_junctions(walls)
     outline, links = _best_region(pieces, given)
     changes = [
-        Change("closed", f"gap of {dist(a, b):.2f} m in the outline, to {at_text(b)}, closed", a)
-        for a, b in links
+        Change("closed", f"gap of {dist(a, b):.2f} m in the outline closed", a, b) for a, b in links
     ]
     closing = [_like_nearest(pieces, a, b) for a, b in links]
     inside = _inside(split_at_junctions([*pieces, *closing]), outline, changes)

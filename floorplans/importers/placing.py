@@ -19,7 +19,7 @@ FLYING_HEIGHT_M = 2.0
 SOURCE_HEIGHT_M = 1.5
 
 _STEPS = ((1, 0), (0, 1), (1, 1), (1, -1))
-_START_CLEAR_M = 0.25
+_START_CLEAR_M = 0.6
 
 
 @dataclass(frozen=True)

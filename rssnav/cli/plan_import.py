@@ -1,0 +1,216 @@
+"""``rssnav plan import``: make a plan of a file that another program wrote."""
+
+from collections import Counter
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from floorplans.importers import Imported, ImportOptions, import_plan
+from floorplans.repair import Change
+from rssnav.cli.console import print_json, print_table
+from rssnav.cli.options import Json, check_suffix, examples
+from rssnav.cli.plan_facts import facts_of, print_facts
+from rssnav.files import whole_file
+
+LISTED_CHANGES = ("closed", "dropped", "raised")
+"""Kinds of changes that are listed one by one; of the others the report tells how many."""
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the command."""
+    parent.command(
+        "import",
+        epilog=examples(
+            "rssnav plan import office.dxf -o office.toml",
+            "rssnav plan import office.dxf -o office.toml --unit mm --layer 'A-GLAZ*=wall:glass'",
+            "rssnav plan import map.yaml -o lab.toml --height 2.8 --wall-material brick",
+        ),
+    )(import_file)
+
+
+def _point(text: str | None) -> tuple[float, float] | None:
+    if text is None:
+        return None
+    x, y = _numbers(text, "xy", "--start")
+    return (x, y)
+
+
+def _position(text: str | None) -> tuple[float, float, float] | None:
+    if text is None:
+        return None
+    x, y, z = _numbers(text, "xyz", "--source")
+    return (x, y, z)
+
+
+def _numbers(text: str, names: str, option: str) -> tuple[float, ...]:
+    """Read "1.5,2,1" as one number for each letter of `names`."""
+    try:
+        numbers = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) != len(names):
+        shape = ",".join(names).upper()
+        raise typer.BadParameter(f"{text!r} is not {shape} in metres.", param_hint=option)
+    return numbers
+
+
+def _layers(texts: list[str] | None) -> dict[str, str]:
+    layers: dict[str, str] = {}
+    for text in texts or ():
+        name, equals, meaning = text.rpartition("=")
+        if not equals or not name:
+            raise typer.BadParameter(
+                f"{text!r} is not NAME=KIND or NAME=KIND:MATERIAL.", param_hint="--layer"
+            )
+        layers[name] = meaning
+    return layers
+
+
+def import_file(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="A DXF drawing, a GeoJSON or IMDF venue, a ROS map or an IFC model.",
+            show_default=False,
+        ),
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE", help="The .toml file to write.")
+    ],
+    name: Annotated[
+        str | None, typer.Option(help="Name of the plan.", show_default="the file's")
+    ] = None,
+    height: Annotated[
+        float | None,
+        typer.Option(metavar="M", help="From floor to ceiling.", show_default="the file's, else 3"),
+    ] = None,
+    wall_thickness: Annotated[
+        float | None,
+        typer.Option(
+            metavar="M", help="Of walls whose thickness the file does not tell.", show_default="0.1"
+        ),
+    ] = None,
+    wall_material: Annotated[
+        str | None,
+        typer.Option(
+            metavar="MATERIAL",
+            help="Of walls whose material the file does not tell.",
+            show_default="plasterboard, concrete where thick",
+        ),
+    ] = None,
+    floor_material: Annotated[
+        str | None, typer.Option(metavar="MATERIAL", show_default="the file's, else concrete")
+    ] = None,
+    ceiling_material: Annotated[
+        str | None, typer.Option(metavar="MATERIAL", show_default="the file's, else concrete")
+    ] = None,
+    source: Annotated[
+        str | None,
+        typer.Option(
+            metavar="X,Y,Z", help="Radio source in the plan.", show_default="off the walls"
+        ),
+    ] = None,
+    start: Annotated[
+        str | None,
+        typer.Option(
+            metavar="X,Y", help="Start of the search.", show_default="far from the source"
+        ),
+    ] = None,
+    unit: Annotated[
+        str | None,
+        typer.Option(help="Of the file: mm, cm, m, in, ft ...", show_default="the file's"),
+    ] = None,
+    level: Annotated[
+        str | None, typer.Option(help="Which storey, where the file holds several.")
+    ] = None,
+    scale: Annotated[
+        float | None, typer.Option(metavar="M", help="Side of a pixel, for pictures.")
+    ] = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            metavar="M", help="How far walls may be moved to meet.", show_default="the format's"
+        ),
+    ] = None,
+    layer: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=KIND[:MATERIAL]",
+            help="What a layer or type is: wall, door, window or ignore; NAME may hold * and ?.",
+        ),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace whatever is at FILE.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Make a plan of a drawing, a venue, a robot's map or a building model.
+
+    What the file does not tell gets a default that the plan's file marks as assumed; the report
+    says what became of every layer, and what was mended.
+    """
+    check_suffix(output, (".toml",), "--output")
+    options = ImportOptions(
+        name=name,
+        height_m=height,
+        wall_thickness_m=wall_thickness,
+        wall_material=wall_material,
+        floor_material=floor_material,
+        ceiling_material=ceiling_material,
+        source=_position(source),
+        start=_point(start),
+        unit=unit,
+        level=level,
+        scale_m=scale,
+        tolerance_m=tolerance,
+        layers=_layers(layer),
+    )
+    if output.exists() and not force:
+        raise FileExistsError(17, "the file is there already; --force replaces it", str(output))
+    imported = import_plan(file, options)
+    with whole_file(output) as beside:
+        beside.write_text(imported.toml(), encoding="utf-8", newline="\n")
+    _report(imported, output, as_json)
+
+
+def _report(imported: Imported, output: Path, as_json: bool) -> None:
+    if as_json:
+        print_json(
+            {
+                "output": str(output),
+                **facts_of(imported.plan),
+                "origin": asdict(imported.origin),
+                "layers": [asdict(use) for use in imported.layers],
+                "assumed": [asdict(assumption) for assumption in imported.assumed],
+                "changes": [asdict(change) for change in imported.changes],
+                "notes": imported.notes,
+            }
+        )
+        return
+    if imported.layers:
+        rows = [(use.name, use.n_objects, use.became) for use in imported.layers]
+        print_table(("layer", ">objects", "became"), rows)
+        print()
+    if imported.assumed:
+        print_table(
+            ("assumed", "value", "why"), [(a.key, a.value, a.why) for a in imported.assumed]
+        )
+        print()
+    _print_changes(imported.changes)
+    for sentence in imported.notes:
+        print(sentence)
+    print_facts(imported.plan)
+    print(f"\nwrote {output}; see it with: rssnav plan show {output}")
+
+
+def _print_changes(changes: tuple[Change, ...]) -> None:
+    """Print how many changes of each kind there were, and those that change the building."""
+    if not changes:
+        return
+    counts = Counter(change.kind for change in changes)
+    print("mended: " + ", ".join(f"{n} {kind}" for kind, n in counts.items()))
+    for change in changes:
+        if change.kind in LISTED_CHANGES:
+            print(f"  {change}")
+    print()
