@@ -2,10 +2,19 @@
 
 import numpy as np
 import pytest
+from buildings import box, door, wall
 from hypothesis import given
 from hypothesis import strategies as st
 
-from raytrace import Paths, PathStatistics
+from raytrace import (
+    Grid,
+    Paths,
+    PathStatistics,
+    TraceConfig,
+    Transmitter,
+    compute_radio_map,
+    trace_paths,
+)
 from raytrace.constants import SPEED_OF_LIGHT
 
 POWER_DBM = 20.0
@@ -132,3 +141,20 @@ def test_table_of_paths() -> None:
     np.testing.assert_allclose(table["gain_db"], [-60.0, 20.0 * np.log10(2e-3)])
     np.testing.assert_allclose(table["gain_real"] + 1j * table["gain_imag"], paths.gain)
     np.testing.assert_allclose(table["departure_zenith"], np.pi / 2.0)
+
+
+OFFICE = box(6.0, 4.0, *wall((3.0, 0.0), (3.0, 4.0), door(1.0, 2.0)))
+
+
+def test_every_layer_of_a_map_is_the_statistic_of_its_paths() -> None:
+    config = TraceConfig(max_reflections=2, max_diffractions=1)
+    source = Transmitter((1.234, 1.567, 1.2), POWER_DBM)
+    grid = Grid.over((0.0, 0.0, 6.0, 4.0), 0.8, 2.0)
+    radio_map = compute_radio_map(OFFICE.scene, source, grid, config)
+    paths = trace_paths(OFFICE.scene, source, grid.points(), config)
+    expected = PathStatistics.of(paths, POWER_DBM, len(grid.points()))
+    layers = {name: layer for name, layer in radio_map.layers.items() if name != "left_out_db"}
+    assert len(layers) >= 3
+    for name, layer in layers.items():
+        values = getattr(expected, name).reshape(grid.shape)
+        np.testing.assert_allclose(layer, values, rtol=1e-6, atol=1e-12, err_msg=name)
