@@ -18,11 +18,12 @@ from ezdxf.layouts.layout import Modelspace
 
 from floorplans.exporters.formats import ExportOptions, Files
 from floorplans.plan import FloorPlan
-from floorplans.plan_shapes import WallStrips
+from floorplans.plan_shapes import DOUBLE_DOOR_M, WallStrips
 from floorplans.walls import Opening, OpeningKind, Wall
 
 LAYERS: dict[OpeningKind, str] = {"door": "DOOR", "window": "WINDOW", "passage": "DOOR-PASSAGE"}
 
+_WIDEST_SWING_M = 3.6
 _MIN_THICKNESS_M = 0.001
 _RED, _BLUE, _GREEN, _GREY, _MAGENTA = 1, 5, 3, 8, 6
 
@@ -64,11 +65,16 @@ def _add_blocks(document: Drawing) -> None:
     door = document.blocks.new("DOOR")
     door.add_line((0, 0), (0, 1))
     door.add_arc((0, 0), 1, 0, 90)
+    double = document.blocks.new("DOOR-DOUBLE")
+    for hinge, shut_deg in ((0, 0), (1, 90)):
+        double.add_line((hinge, 0), (hinge, 0.5))
+        double.add_arc((hinge, 0), 0.5, shut_deg, shut_deg + 90)
     box = [(0, -0.5), (1, -0.5), (1, 0.5), (0, 0.5)]
     window = document.blocks.new("WINDOW")
     window.add_lwpolyline(box, close=True)
     window.add_line((0, 0), (1, 0))
-    document.blocks.new("DOOR-PASSAGE").add_lwpolyline(box, close=True)
+    for name in ("DOOR-WIDE", "DOOR-PASSAGE"):
+        document.blocks.new(name).add_lwpolyline(box, close=True)
 
 
 def _draw_wall(space: Modelspace, wall: Wall, strips: WallStrips) -> None:
@@ -82,16 +88,23 @@ def _draw_wall(space: Modelspace, wall: Wall, strips: WallStrips) -> None:
 
 
 def _insert(space: Modelspace, wall: Wall, opening: Opening) -> None:
-    """Insert an opening's block; a door's keeps its round swing, the others fill the wall."""
+    """Insert an opening's block: a swing as wide as it is, or a box that fills the wall."""
     (x0, y0), (x1, y1) = wall.start, wall.end
-    across_m = opening.width_m if opening.kind == "door" else wall.thickness_m
+    block = _block(opening)
+    swings = block in ("DOOR", "DOOR-DOUBLE")
     space.add_blockref(
-        LAYERS[opening.kind],
+        block,
         wall.point_at(opening.offset_m),
         dxfattribs={
             "layer": LAYERS[opening.kind],
             "xscale": opening.width_m,
-            "yscale": across_m,
+            "yscale": opening.width_m if swings else wall.thickness_m,
             "rotation": degrees(atan2(y1 - y0, x1 - x0)),
         },
     )
+
+
+def _block(opening: Opening) -> str:
+    if opening.kind != "door" or opening.width_m <= DOUBLE_DOOR_M:
+        return LAYERS[opening.kind]
+    return "DOOR-DOUBLE" if opening.width_m <= _WIDEST_SWING_M else "DOOR-WIDE"

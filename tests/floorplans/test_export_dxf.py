@@ -1,0 +1,76 @@
+"""DXF drawings of plans: what they hold, and that they import as the same walls."""
+
+from dataclasses import replace
+
+import ezdxf
+import numpy as np
+import pytest
+
+import floorplans
+from floorplans import FloorPlan
+from floorplans.exporters import export
+from floorplans.importers import ImportOptions, import_plan
+
+
+def reimported(plan: FloorPlan, tmp_path) -> FloorPlan:
+    (path,) = export(plan, tmp_path / "plan.dxf")
+    return import_plan(path, ImportOptions(height_m=plan.height_m)).plan
+
+
+def ends(wall, corner):
+    return sorted([tuple(np.subtract(wall.start, corner)), tuple(np.subtract(wall.end, corner))])
+
+
+def middles(wall, plan):
+    """Middles and widths of a wall's openings, from the plan's corner, to the millimetre."""
+    places = [
+        (*np.subtract(wall.point_at(o.offset_m + o.width_m / 2), plan.bounds[:2]), o.width_m)
+        for o in wall.openings
+    ]
+    return sorted(tuple(np.round(place, 3) + 0.0) for place in places)
+
+
+def matched(plan: FloorPlan, again: FloorPlan):
+    """Yield each wall of a plan with the nearest wall of another, and how far their ends are."""
+    here, there = plan.bounds[:2], again.bounds[:2]
+    for wall in plan.walls:
+        off = [np.abs(np.subtract(ends(wall, here), ends(w, there))).max() for w in again.walls]
+        nearest = int(np.argmin(off))
+        yield wall, again.walls[nearest], off[nearest]
+
+
+@pytest.mark.parametrize("name", floorplans.builtin_names())
+def test_walls_come_back_to_a_millimetre(name: str, tmp_path) -> None:
+    plan = floorplans.load(name)
+    again = reimported(plan, tmp_path)
+    assert len(again.walls) == len(plan.walls)
+    for wall, back, off_m in matched(plan, again):
+        assert off_m < 1e-3
+        assert back.thickness_m == pytest.approx(wall.thickness_m, abs=1e-3)
+        if wall.material in ("brick", "concrete", "plasterboard", "glass", "wood", "metal"):
+            assert back.material == wall.material
+        assert middles(back, again) == middles(wall, plan)
+
+
+def test_layers_and_blocks_name_what_they_are(tmp_path) -> None:
+    (path,) = export(floorplans.load("flat"), tmp_path / "plan.dxf")
+    document = ezdxf.readfile(path)
+    space = document.modelspace()
+    assert document.units == ezdxf.units.M
+    layers = {entity.dxf.layer for entity in space}
+    assert layers == {
+        "WALL-BRICK", "WALL-PLASTERBOARD", "WALL-CHIPBOARD", "AXIS", "DOOR", "DOOR-PASSAGE",
+        "WINDOW", "SOURCE", "START",
+    }  # fmt: skip
+    inserts = [insert.dxf.name for insert in space.query("INSERT")]
+    kinds = [o.kind for w in floorplans.load("flat").walls for o in w.openings]
+    assert inserts.count("WINDOW") == kinds.count("window")
+    assert inserts.count("DOOR") == kinds.count("door")
+    bodies = space.query('LWPOLYLINE[layer=="WALL-CHIPBOARD"]')
+    assert [body.dxf.thickness for body in bodies] == [1.0]
+    assert document.audit().errors == []
+
+
+def test_names_from_everywhere_are_written(tmp_path) -> None:
+    plan = replace(floorplans.load("flat"), name="Büro 東京")
+    assert reimported(plan, tmp_path).outline.area == pytest.approx(plan.outline.area, rel=1e-3)
