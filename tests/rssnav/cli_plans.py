@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import typer
 from typer.testing import CliRunner, Result
@@ -57,6 +58,21 @@ def whole_group() -> Commands:
     for name in COMMANDS:
         group.load(name)
     return group
+
+
+def all_commands() -> dict[str, Any]:
+    """Return every command by the words that call it."""
+
+    def below(group: Any, words: tuple[str, ...]) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for name, command in group.commands.items():
+            if hasattr(command, "commands"):
+                found |= below(command, (*words, name))
+            else:
+                found[" ".join((*words, name))] = command
+        return found
+
+    return below(whole_group(), ())
 
 
 def done(*arguments: object) -> str:

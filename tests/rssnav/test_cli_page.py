@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-from cli_plans import run, whole_group
+from cli_plans import all_commands, run
 
 PAGE = (Path(__file__).parents[2] / "docs" / "cli.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^## rssnav ([a-z ]+)\n(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
@@ -15,18 +15,7 @@ SECTIONS = dict(SECTION.findall(PAGE))
 LONG = ("maps", "experiments", "report")
 
 
-def commands(group, words: tuple[str, ...] = ()) -> dict[str, object]:
-    """Every command by the words that call it."""
-    found = {}
-    for name, command in group.commands.items():
-        if hasattr(command, "commands"):
-            found |= commands(command, (*words, name))
-        else:
-            found[" ".join((*words, name))] = command
-    return found
-
-
-COMMANDS = commands(whole_group())
+COMMANDS = all_commands()
 
 
 def examples(text: str) -> list[str]:

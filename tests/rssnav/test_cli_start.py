@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import shlex
 import subprocess
 import sys
 
 import pytest
-from cli_plans import run, whole_group
+from cli_plans import all_commands, run, whole_group
 from typer.testing import CliRunner
 
 import rssnav
@@ -63,3 +64,30 @@ def test_every_public_name_is_there_and_no_other() -> None:
     assert set(rssnav.__all__) <= set(dir(rssnav))
     with pytest.raises(AttributeError, match="has no attribute 'Trainer'"):
         _ = rssnav.Trainer  # type: ignore[attr-defined]
+
+
+EXAMPLES = {name: command.epilog for name, command in all_commands().items()}
+LONG = {"maps", "experiments", "report", "explore"}
+"""Commands that take long or do not end; their examples are parsed only."""
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_examples_of_the_help_run_when_pasted(name, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    lines = [shlex.split(line)[1:] for line in EXAMPLES[name].split("\n\n")[1:]]
+    assert any(line[: len(name.split())] == name.split() for line in lines)
+    for line in lines:
+        if line[0] in LONG:
+            all_commands()[line[0]].make_context(line[0], line[1:])
+        else:
+            result = run(*line)
+            assert result.exit_code == 0, f"rssnav {shlex.join(line)}\n{result.output}"
+
+
+def test_examples_of_the_list_of_commands_are_there() -> None:
+    lines = [shlex.split(line)[1:] for line in whole_group().epilog.split("\n\n")[1:]]
+    assert len(lines) >= 3
+    for first, *arguments in lines:
+        words = 2 if first == "plan" else 1
+        command = all_commands()[" ".join([first, *arguments][:words])]
+        command.make_context(first, [first, *arguments][words:])
