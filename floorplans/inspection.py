@@ -213,7 +213,7 @@ def _narrow_and_shut_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
         if room.buffer(-SLIVER_M / 2).is_empty:
             text = f"a sliver of {room.area:.3g} m² between walls; make one wall of them"
             yield Finding("warning", "sliver", text, at)
-        elif not len(tree.query(room.boundary, predicate="dwithin", distance=1e-4)):
+        elif not len(tree.query(room, predicate="dwithin", distance=1e-4)):
             yield Finding("warning", "no door", _shut(room), at)
 
 

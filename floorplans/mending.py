@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import dist
 
 import numpy as np
 import shapely
-from shapely.geometry import LineString, Polygon
-from shapely.geometry.polygon import LinearRing
 
+from floorplans.checks import building_faults
 from floorplans.plan import UncheckedPlan
 from floorplans.repair import REACH_M, Change, repair_walls
+from floorplans.repair_walls import at_text
 from floorplans.toml_writer import dumps
-from floorplans.walls import TOLERANCE_M, Point, Wall
+from floorplans.walls import TOLERANCE_M, Point
 
 
 @dataclass(frozen=True)
@@ -40,34 +39,33 @@ def mend(plan: UncheckedPlan, reach_m: float = REACH_M) -> Mended:
         Nothing is moved farther than walls are thick and this [m].
     """
     repaired = repair_walls(plan.walls, reach_m)
-    changes = list(repaired.changes)
-    shell = _follow(plan.outline.exterior, repaired.walls, changes)
-    holes = [_follow(hole, repaired.walls, changes) for hole in plan.outline.interiors]
-    outline = Polygon(shell, holes)
-    if not outline.is_valid:
-        outline = plan.outline
-    return Mended(replace(plan, walls=repaired.walls, outline=outline), tuple(changes))
+    mended = replace(plan, walls=repaired.walls) if repaired.changes else plan
+    followed, moves = _follow(mended, reach_m)
+    if _n_faults(followed) < _n_faults(mended):
+        return Mended(followed, (*repaired.changes, *moves))
+    return Mended(mended, repaired.changes)
 
 
-def _follow(ring: LinearRing, walls: tuple[Wall, ...], changes: list[Change]) -> list[Point]:
-    """Move corners of a ring that lie beside a wall's line onto the end or the line they are at."""
-    lines = np.array([LineString([wall.start, wall.end]) for wall in walls], dtype=np.object_)
-    reach = np.array([wall.thickness_m / 2 + REACH_M for wall in walls])
-    moved: list[Point] = []
-    for x, y in ring.coords:
-        corner = shapely.Point(x, y)
-        gaps = shapely.distance(lines, corner)
+def _n_faults(plan: UncheckedPlan) -> int:
+    return sum(1 for _ in building_faults(plan))
+
+
+def _follow(plan: UncheckedPlan, reach_m: float) -> tuple[UncheckedPlan, list[Change]]:
+    """Move corners of the outline onto the wall ends they are beside."""
+    ends = np.array([end for wall in plan.walls for end in (wall.start, wall.end)]).reshape(-1, 2)
+    reach = np.array([wall.thickness_m / 2 + reach_m for wall in plan.walls]).repeat(2)
+    moves: dict[Point, Point] = {}
+    for corner in {(x, y) for x, y in shapely.get_coordinates(plan.outline).tolist()}:
+        gaps = np.hypot(*(ends - corner).T)
         near = np.flatnonzero(gaps <= reach)
-        if not len(near) or gaps[near].min() <= TOLERANCE_M:
-            moved.append((x, y))
-            continue
-        target = _nearest([walls[k] for k in near], (x, y))
-        moved.append(target)
-        changes.append(Change("moved", f"corner of the outline moved to {target}", (x, y)))
-    return moved
-
-
-def _nearest(walls: list[Wall], corner: Point) -> Point:
-    """End of a wall that is nearest to a corner."""
-    ends = [end for wall in walls for end in (wall.start, wall.end)]
-    return min(ends, key=lambda end: dist(end, corner))
+        if len(near) and gaps.min() > TOLERANCE_M:
+            x, y = ends[near[np.argmin(gaps[near])]]
+            moves[corner] = (float(x), float(y))
+    outline = shapely.transform(
+        plan.outline, lambda points: np.array([moves.get((x, y), (x, y)) for x, y in points])
+    )
+    changes = [
+        Change("moved", f"corner of the outline moved to {at_text(to)}", corner)
+        for corner, to in moves.items()
+    ]
+    return (replace(plan, outline=outline) if outline.is_valid else plan), changes

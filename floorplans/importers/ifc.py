@@ -30,8 +30,8 @@ from floorplans.importers.ifc_walls import ReadWall, read_filling, read_wall
 MAX_WALLS = 20_000
 
 _DAMAGED = (
-    ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, TypeError, ValueError,
-    ShapelyError,
+    ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, ShapelyError,
+    TypeError, ValueError,
 )  # fmt: skip
 """What a model whose entities miss parts, or refer to others of a wrong class, ends in."""
 
