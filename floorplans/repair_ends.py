@@ -63,7 +63,7 @@ def _moved_to_walls(
     """Ends (n, 2, 2), each moved along its wall to the centre line of the wall it stands in."""
     lines = wall_lines(walls)
     points = _points(ends.reshape(-1, 2))
-    far_m = reach_m + max(wall.thickness_m for wall in walls) / 2
+    far_m = 1.5 * (reach_m + max(wall.thickness_m for wall in walls) / 2)
     which, near = shapely.STRtree(lines).query(points, predicate="dwithin", distance=far_m)
     gaps = shapely.distance(points[which], lines[near])
     candidates: list[list[tuple[int, float]]] = [[] for _ in points]
@@ -119,7 +119,8 @@ def _meeting_point(
     best, best_m = here, np.inf
     for j, gap_m in others:
         other = walls[j]
-        if gap_m > reach_m + (0.0 if in_corner else other.thickness_m / 2):
+        meant = gap_m <= reach_m if in_corner else _in_body(wall, here, other, reach_m)
+        if not meant:
             continue
         crossing = line_crossing(wall, other, _MIN_SINE)
         if crossing is None:
@@ -132,6 +133,13 @@ def _meeting_point(
         ):
             best, best_m = tidy_point(*crossing), move_m
     return best
+
+
+def _in_body(wall: Wall, end: Point, other: Wall, reach_m: float) -> bool:
+    """Whether an end lies in another wall's body, or in the corner the two would make."""
+    _, across = along_across(other, end)
+    in_depth = abs(across) <= reach_m + other.thickness_m / 2
+    return in_depth and _beside(other, end) <= reach_m + wall.thickness_m / 2
 
 
 def _beside(wall: Wall, point: Point) -> float:

@@ -60,7 +60,7 @@ def merge_lines(
     tuple of Wall
     """
     merged: list[Wall] = []
-    for group in _groups(walls, reach_m, sideways_share):
+    for group in sorted(_groups(walls, reach_m, sideways_share), key=min):
         if len(group) == 1:
             merged.append(walls[group[0]])
         else:
