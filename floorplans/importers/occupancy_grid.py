@@ -131,7 +131,7 @@ def _facts_beside(picture: Path, scale_m: float | None) -> tuple[MapFacts, tuple
 def _picture_of(path: Path, image: str) -> Path:
     """Path of the picture a YAML file names; it must lie in or below the YAML file's folder."""
     folder = path.parent.resolve()
-    picture = (folder / image).resolve()
+    picture = (folder / image.replace("\0", "")).resolve()
     if not picture.is_relative_to(folder) or picture.suffix.lower() not in PICTURES:
         raise PlanError(
             "expected a .pgm or .png file beside the YAML file", ("image",), image, str(path)
@@ -196,9 +196,9 @@ def _number(value: object, key: str) -> float:
 def _read_picture(path: Path) -> Image.Image:
     """Open a picture, refuse a large one by its header, then decode it."""
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), path.open("rb") as file:
             warnings.simplefilter("error", Image.DecompressionBombWarning)
-            picture = Image.open(path, formats=("PPM", "PNG"))
+            picture = Image.open(file, formats=("PPM", "PNG"))
             if picture.width * picture.height > MAX_PIXELS:
                 raise PlanError(
                     f"{picture.width} x {picture.height} pixels, at most {MAX_PIXELS} are read; "

@@ -21,6 +21,7 @@ from floorplans.errors import PlanError
 from floorplans.importers.draft import Draft, ImportOptions, LayerUse, RawWall
 from floorplans.importers.occupancy_grid import MapFacts, Mask, read_grid
 from floorplans.importers.raster_walls import walls_of_picture
+from floorplans.importers.units import BUILDING_M
 from floorplans.importers.wall_areas import block_walls, box_sides
 
 TOLERANCE_PX = 1.5
@@ -32,7 +33,7 @@ MAX_OBSTACLE_M = 1.5
 _CLOSED_M = 0.1  # half the width of gaps in walls that are taken for noise [m]
 _SPECK_M = 0.15  # what stands alone and is no longer is noise [m]
 _SQUAT = 0.35  # width over length from which what stands alone is an obstacle, not a wall
-_BOXY = 0.85  # share of the box around it that an obstacle fills to be one
+_BOXY = 0.9  # share of the box around it that an obstacle fills to be one
 _EVERYWHERE = np.ones((3, 3), dtype=np.bool_)
 
 
@@ -65,6 +66,7 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
     """
     grid = read_grid(path, options.scale_m)
     pixel_m = grid.facts.resolution_m
+    _check_extent(grid.occupied, pixel_m)
     tolerance_px = options.tolerance_m / pixel_m if options.tolerance_m else TOLERANCE_PX
     sorted_ = _sort(grid.occupied, pixel_m)
     walls = walls_of_picture(sorted_.walls, tolerance_px)
@@ -84,6 +86,20 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
             _deviation(sorted_.walls & grid.occupied, walls, tolerance_px, pixel_m),
         ),
     )
+
+
+def _check_extent(occupied: Mask, pixel_m: float) -> None:
+    """Refuse a scale at which what is drawn is no building."""
+    rows, columns = np.nonzero(occupied)
+    width_m, depth_m = float(np.ptp(columns) + 1) * pixel_m, float(np.ptp(rows) + 1) * pixel_m
+    low_m, high_m = BUILDING_M
+    if not low_m <= max(width_m, depth_m) <= high_m:
+        raise PlanError(
+            f"with pixels of {pixel_m:g} m, the walls cover {width_m:.3g} m x {depth_m:.3g} m, "
+            "which is no building; say how large a pixel is, such as --scale 0.05 [m]",
+            ("resolution",),
+            pixel_m,
+        )
 
 
 def _sort(occupied: Mask, pixel_m: float) -> _Sorted:
