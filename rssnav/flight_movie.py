@@ -44,6 +44,7 @@ HOLD_S = 1.5
 """How long the last frame stays [s]."""
 
 Frame = NDArray[np.uint8]
+Numbers = NDArray[np.int32]
 Progress = Callable[[int, int], None]
 
 _DPI = 110
@@ -270,33 +271,47 @@ def _counted(frames: Iterable[Frame], total: int, progress: Progress | None) -> 
 
 def _write_gif(path: Path, frames: Iterable[Frame], frames_per_s: int) -> None:
     """Write all frames in the colours of the last one, which has all that matter."""
-    shown = list(frames)
-    palette = _palette(shown[-1])
-    first, *others = (_in_palette(frame, palette) for frame in shown)
+    numbered = [_colour_numbers(frame) for frame in frames]
+    palette = _palette(numbered[-1])
+    nearest = _nearest(palette, numbered)
+    images = [Image.fromarray(nearest[numbers]) for numbers in numbered]
+    for image in images:
+        image.putpalette(palette.tobytes())
     duration_ms = 1000 // frames_per_s
-    first.save(path, save_all=True, append_images=others, duration=duration_ms, loop=0)
+    images[0].save(path, save_all=True, append_images=images[1:], duration=duration_ms, loop=0)
 
 
-def _palette(frame: Frame) -> Frame:
+def _colour_numbers(frame: Frame) -> Numbers:
+    """Return each pixel's colour as one number (height, width): red, green and blue a byte each."""
+    red, green, blue = np.moveaxis(frame.astype(np.int32), -1, 0)
+    return red << 16 | green << 8 | blue
+
+
+def _colours(numbers: Numbers) -> Frame:
+    """Return the colours (n, 3) of numbers (n,)."""
+    return np.stack([numbers >> 16, numbers >> 8 & 255, numbers & 255], axis=-1).astype(np.uint8)
+
+
+def _palette(numbers: Numbers) -> Frame:
     """Return the 256 colours (256, 3) that a GIF can have: those with a meaning, then the others.
 
     Of the others, those that fill most of the picture.
     """
-    colours, counts = np.unique(frame.reshape(-1, 3), axis=0, return_counts=True)
+    found, counts = np.unique(numbers, return_counts=True)
     meant = [to_rgb(name) for name in (SOURCE, INK, OTHER_AGENT, *AGENT_COLOURS.values())]
     exact = np.rint(255.0 * np.array(meant)).astype(np.uint8)
-    return np.concatenate([exact, colours[np.argsort(counts)[::-1]]])[:_GIF_COLOURS]
+    return np.concatenate([exact, _colours(found[np.argsort(counts)[::-1]])])[:_GIF_COLOURS]
 
 
-def _in_palette(frame: Frame, palette: Frame) -> Image.Image:
-    """Return a frame in the nearest colours of a palette."""
-    weights = np.array([1 << 16, 1 << 8, 1])  # one number a colour is sorted faster than three
-    numbers, inverse = np.unique(frame @ weights, return_inverse=True)
-    colours = numbers[:, None] // weights % 256
-    nearest = np.asarray(KDTree(palette).query(colours)[1], dtype=np.uint8)
-    image = Image.fromarray(nearest[inverse.reshape(frame.shape[:2])])
-    image.putpalette(palette.tobytes())
-    return image
+def _nearest(palette: Frame, frames: Sequence[Numbers]) -> NDArray[np.uint8]:
+    """Return the index of the nearest colour in a palette, for each colour number of the frames."""
+    used = np.zeros(1 << 24, dtype=np.bool_)
+    for numbers in frames:
+        used[numbers] = True
+    found = np.flatnonzero(used).astype(np.int32)
+    nearest = np.zeros(1 << 24, dtype=np.uint8)
+    nearest[found] = KDTree(palette).query(_colours(found))[1]
+    return nearest
 
 
 def _write_mp4(path: Path, frames: Iterable[Frame], frames_per_s: int) -> None:
