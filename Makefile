@@ -5,9 +5,10 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 RESULTS ?= results
 QUICK ?=
+PEERS ?= .venv-peers
 
 .DEFAULT_GOAL := help
-.PHONY: help install maps experiments test test-lowest lint types contracts bench docs dist clean
+.PHONY: help install maps experiments test test-lowest lint types contracts bench bench-peers bench-growth docs dist clean
 
 help: ## list these targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
@@ -47,6 +48,15 @@ contracts: install ## check that the packages keep their layers
 
 bench: install ## measure the speed of tracer and learning, side by side with plain C
 	$(BIN)/python -m pytest tests/benchmarks --benchmark-enable --benchmark-only
+
+bench-peers: install ## trace the same plans with Sionna RT and pyroomacoustics, for docs/performance.md
+	test -x $(PEERS)/bin/python || $(PYTHON) -m venv $(PEERS)
+	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check 'sionna-rt>=1.0' || \
+		echo 'bench-peers: sionna-rt cannot be installed here; the table goes without it'
+	$(BIN)/python tests/benchmarks/peers.py --sionna $(PEERS)/bin/python
+
+bench-growth: install ## measure time and memory against cells, rooms and order, for docs/performance.md
+	$(BIN)/python tests/benchmarks/growth.py
 
 docs: install ## build the documentation into docs/_build/html
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
