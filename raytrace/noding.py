@@ -31,13 +31,17 @@ class _Lines:
 
     def __init__(self, panels: Sequence[Panel]) -> None:
         self._chains = [[_vertex(p.start), _vertex(p.end)] for p in panels]
+        self._drawn: dict[int, shapely.LineString] = {}
         self._share_vertices()
         far = max((abs(c) for chain in self._chains for v in chain for c in v), default=1.0)
         self.snap_m = max(FINEST_SNAP_M, 2.0 ** (np.ceil(np.log2(max(far, 1.0))) - 46.0))
 
     def geometries(self) -> NDArray[np.object_]:
         """(n,) line strings."""
-        return np.array([shapely.LineString(chain) for chain in self._chains], dtype=object)
+        for number, chain in enumerate(self._chains):
+            if number not in self._drawn:
+                self._drawn[number] = shapely.LineString(chain)
+        return np.array([self._drawn[number] for number in range(len(self._chains))], dtype=object)
 
     def add_cut(self, tip: Vertex, ahead: Floats) -> bool:
         """Carry a cut straight on from a vertex to the nearest line; tell whether there is one."""
@@ -61,6 +65,7 @@ class _Lines:
             shared[a] = min(shared[a], shared[b])
         for k, chain in enumerate(self._chains):
             chain[:] = [ends[shared[2 * k]], ends[shared[2 * k + 1]]]
+        self._drawn.clear()
         own = list(dict.fromkeys(ends[k] for k in shared))
         near = shapely.STRtree(self.geometries()).query(shapely.points(own), "dwithin", TOUCHING_M)
         for vertex, chain in near.T.tolist():
@@ -75,6 +80,7 @@ class _Lines:
         chain.append(vertex)
         start, end = np.array(chain[0]), np.array(chain[-2])
         chain.sort(key=lambda v: float((np.array(v) - start) @ (end - start)))
+        self._drawn.pop(number, None)
         return vertex
 
 
