@@ -146,9 +146,12 @@ def _refuse_partial_slabs(
     off = np.min([np.abs(triangles[:, 0, 2] - z) for z in slabs_z], axis=0)
     between = level & (off > 1e-9)
     if between.any():
+        x, y, z = triangles[between][0].mean(axis=0)
         raise SceneError(
-            f"{between.sum()} horizontal faces lie between floor and ceiling "
-            f"(first: face {index[between][0]}): partial slabs are not supported"
+            f"{between.sum()} horizontal faces lie between floor and ceiling (first: face "
+            f"{index[between][0]} at ({x:.3g}, {y:.3g}, {z:.3g})): partial slabs are not "
+            "supported, so no ceiling lower than the neighbour's, no platform and no table top; "
+            "waves are followed in plan view, between one floor and one ceiling"
         )
 
 
