@@ -28,6 +28,8 @@ def without_doubles(walls: Sequence[RawWall]) -> list[RawWall]:
     list of RawWall
         In the order given.
     """
+    if not walls:
+        return []
     lines = [LineString([wall.start, wall.end]) for wall in walls]
     thickness_m = [wall.thickness_m or 0.0 for wall in walls]
     bodies = [

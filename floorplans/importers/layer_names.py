@@ -28,7 +28,7 @@ _WORDS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
         "hatch", "schraff", "defpoint", "viewport", "vport", "title", "demol", "label",
     )),
     ("door", (
-        "door", "tur", "tuer", "porte", "porta", "portes", "puert", "deur", "dorr", "drzwi",
+        "door", "tur", "tuer", "porte ", "porta ", "portes ", "puert", "deur", "dorr", "drzwi",
         "kapi", "gate",
     )),
     ("window", (
@@ -41,14 +41,14 @@ _WORDS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
         "stuetz", "pilar", "pilast", "kolom", "poteau",
     )),
     ("ignore", (
-        "sheet", "frame", "grid", "axis", "axe", "achs", "patt", "symb", "plant", "tree", "san",
+        "sheet", "frame", "grid", "axis", "axe", "achs", "patt", "symb", "plant", "tree", "san ", "sanit",
         "plumb", "fixt", "equip", "light", "elec", "hvac", "duct", "pipe", "stair", "trepp",
         "escal", "floor", "boden", "ceil", "decke", "roof", "dach", "area", "room", "raum",
         "space", "zone", "overhead", "ovhd", "rail", "appl", "cabinet", "casework", "logo", "clng",
         "flor", "evtr", "lift",
     )),
 )  # fmt: skip
-"""The first group that one of a name's words begins like."""
+"""The first group that one of a name's words begins like; with a space at the end, is."""
 
 _MATERIAL_WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("concrete", ("conc", "beton", "hormig", "calcest", "stahlb")),
@@ -147,6 +147,6 @@ def _words(name: str) -> list[str]:
 def _first(words: list[str], lists: tuple[tuple[T, tuple[str, ...]], ...]) -> T | None:
     """Return the first value one of whose beginnings a word has."""
     for value, beginnings in lists:
-        if any(word.startswith(beginnings) for word in words):
+        if any(f"{word} ".startswith(beginnings) for word in words):
             return value
     return None
