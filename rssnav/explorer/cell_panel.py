@@ -68,12 +68,13 @@ def page_3d(plan: FloorPlan, found: CellPaths | None) -> str:
 
 def _facts(found: CellPaths) -> str:
     x, y, z = found.receiver
+    spread_s = float(found.statistics.delay_spread_s[0])
     return pairs(
         [
             ("cell", f"({x:g}, {y:g}, {z:g}) m"),
-            ("RSS", decibels(found.rss_dbm)),
+            ("RSS", decibels(float(found.statistics.rss_dbm[0]))),
             ("paths", thousands(len(found.paths))),
-            ("delay spread", f"{1e9 * found.delay_spread_s:.1f} ns"),
+            ("delay spread", f"{1e9 * spread_s:.1f} ns"),
         ]
     )
 

@@ -34,7 +34,7 @@ from rssnav.figures import AGENT_COLOURS, INK
 from rssnav.map_picture import FREE_WALL, NO_PATH
 
 FONT = "Inter, system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
-QUIET_FOCUS = ":host(:focus:not(:focus-visible)), :focus:not(:focus-visible) { outline: none; }"
+QUIET_FOCUS = ":host(:focus), :focus { outline: none !important; }"
 FLOOR = "#fbfaf7"
 PATH_COLOURS = "YlOrRd"
 PATH_RANGE_DB = 30.0
@@ -330,7 +330,7 @@ def _empty_figure() -> figure:
 def _layers(radio_map: RadioMap) -> dict[str, NDArray[Any]]:
     """What a map tells of each cell, (n_y, n_x) each, by the name it has under the pointer."""
     layers = {"rss": radio_map.rss_dbm, "path_count": radio_map.path_count}
-    spread_s = getattr(radio_map, "delay_spread_s", None)
+    spread_s = radio_map.delay_spread_s
     return layers if spread_s is None else {**layers, "delay_spread_s": spread_s}
 
 

@@ -82,7 +82,7 @@ class PlanPanel:
         return list(dict.fromkeys((*floorplans.builtin_names(), self._session.plan.name)))
 
     def _make_settings(self) -> None:
-        options: dict[str, Any] = {"stylesheets": WIDGETS, "width": 165, "margin": (3, 5)}
+        options: dict[str, Any] = {"stylesheets": WIDGETS, "width": 152, "margin": (3, 5)}
         number = pn.widgets.FloatInput
         self._inputs: dict[str, Any] = {
             "cell_size_m": number(label="Cell [m]", start=0.05, step=0.25, **options),

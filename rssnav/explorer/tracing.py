@@ -4,15 +4,17 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from threading import Lock
 
 import numpy as np
+from numpy.typing import NDArray
 
 from floorplans import FloorPlan, PlanError
 from raytrace import (
     Grid,
     Paths,
+    PathStatistics,
     RadioMap,
     Scene,
     SceneError,
@@ -103,26 +105,14 @@ class CellPaths:
     paths: Paths
 
     @property
-    def power_dbm(self) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
+    def power_dbm(self) -> NDArray[np.float64]:
         """(n,) power of each path [dBm]."""
         return self.settings.power_dbm + self.paths.gain_db
 
-    @property
-    def rss_dbm(self) -> float:
-        """Sum of the powers [dBm]; -inf without a path."""
-        total = float(np.sum(np.abs(self.paths.gain) ** 2))
-        return self.settings.power_dbm + 10.0 * float(np.log10(total)) if total > 0.0 else -np.inf
-
-    @property
-    def delay_spread_s(self) -> float:
-        """Spread of the delays, rms about their mean, weighted by power [s]; 0 without a path."""
-        power = np.abs(self.paths.gain) ** 2
-        total = float(power.sum())
-        if total == 0.0:
-            return 0.0
-        delay_s = self.paths.delay_s
-        mean_s = float(power @ delay_s) / total
-        return float(np.sqrt(power @ (delay_s - mean_s) ** 2 / total))
+    @cached_property
+    def statistics(self) -> PathStatistics:
+        """What the paths amount to, for one receiver."""
+        return PathStatistics.of(self.paths, self.settings.power_dbm, 1)
 
 
 class MapCache:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+import math
+import time
 from dataclasses import dataclass, field
 from threading import Event, Thread
 from typing import Literal
@@ -24,6 +26,7 @@ LOGGER = logging.getLogger(__name__)
 KEPT_FLIGHTS = 200
 MAX_EPISODES = 20_000
 _CHUNK_EPISODES = 64
+_LOOK_S = 0.1  # what is flown between two looks at the clock
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,8 @@ class TrainingSettings:
     tolerance_db : float
         A reading this near to a known state is that state [dB]; 0 makes every value a state.
     learning : QLearning
+    pace : float
+        Most episodes a second, for those who want to watch.
     """
 
     agent: Literal["rss", "location"] = "rss"
@@ -54,11 +59,14 @@ class TrainingSettings:
     goal_distance_m: float = LocationAgent.terminal_distance_m
     tolerance_db: float = 0.0
     learning: QLearning = field(default_factory=QLearning)
+    pace: float = math.inf
 
     def __post_init__(self) -> None:
         """Check the number of episodes; the rest is checked by what it is for."""
         if not 1 <= self.episodes <= MAX_EPISODES:
             raise ValueError(f"episodes: {self.episodes} must be 1 to {MAX_EPISODES}")
+        if not self.pace > 0.0:
+            raise ValueError(f"pace: {self.pace!r} must be positive")
 
     def agent_itself(self) -> Agent:
         """Make the agent; raise ValueError for a parameter out of range."""
@@ -136,6 +144,7 @@ class LiveTraining:
         self.problem = ""
         self._steps = np.empty(settings.episodes, dtype=np.int32)
         self._n_flown = 0
+        self._begin_s = 0.0
         self._stop = Event()
         self._thread = Thread(target=self._run, name="training", daemon=True)
 
@@ -176,6 +185,7 @@ class LiveTraining:
         problem = LearningProblem.of(world, settings.agent_itself(), settings.learning)
         self.shortest_steps = shortest_path(world, problem.process.terminal).steps
         learner = problem.learner(generator_states(settings.seed, 0), settings.episodes)
+        self._begin_s = time.monotonic()
         learner.trace = np.empty(settings.learning.max_steps, dtype=np.int32)
         for episode in kept_episodes(settings.episodes).tolist():
             if not self._advance(learner, episode):
@@ -184,16 +194,18 @@ class LiveTraining:
 
     def _advance(self, learner: Learner, episode: int) -> bool:
         """Fly up to an episode and log it; False when told to stop on the way."""
-        counters = learner.run.counters
+        counters, pace = learner.run.counters, self.settings.pace
+        chunk = int(max(1.0, min(_CHUNK_EPISODES, pace * _LOOK_S)))
         while (flown := int(counters[common.EPISODE])) < episode:
             if self._stop.is_set():
                 return False
-            learner.advance(min(episode, flown + _CHUNK_EPISODES))
+            learner.advance(min(episode, flown + chunk))
             now = int(counters[common.EPISODE])
             self._steps[flown:now] = learner.run.episodes[flown:now, common.STEPS]
             self._n_flown = now
             if counters[common.CONVERGED_EPISODE] >= 0:
                 self.converged_episode = int(counters[common.CONVERGED_EPISODE])
+            self._stop.wait(now / pace - (time.monotonic() - self._begin_s))
         return True
 
 

@@ -1,5 +1,6 @@
 """Choose an agent, train it, watch it learn."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -20,6 +21,7 @@ MOST_POINTS = 2000
 SMOOTHED = 25
 """Episodes that the line of the curve averages over."""
 
+PACES = {"no limit": math.inf, "50": 50.0, "5": 5.0}
 AGENTS = {"RSS": "rss", "Location": "location"}
 _LEARNING = {
     "gamma": ("Discount \u03b3", 0.01),
@@ -92,7 +94,7 @@ class TrainingPanel:
         return button
 
     def _make_inputs(self) -> None:
-        options: dict[str, Any] = {"stylesheets": WIDGETS, "width": 165, "margin": (3, 5)}
+        options: dict[str, Any] = {"stylesheets": WIDGETS, "width": 152, "margin": (3, 5)}
         whole, number = pn.widgets.IntInput, pn.widgets.FloatInput
         self._agent = pn.widgets.RadioButtonGroup(
             options=AGENTS, value="rss", stylesheets=WIDGETS, width=220
@@ -117,6 +119,9 @@ class TrainingPanel:
                 label="Tolerance of states [dB]", value=0.0, start=0.0, step=0.5, **options
             ),
             "seed": whole(label="Seed", value=0, start=0, **options),
+            "pace": pn.widgets.Select(
+                label="Episodes a second", options=PACES, value=math.inf, **options
+            ),
         }
         self._learning: dict[str, Any] = {
             name: number(label=label, value=getattr(QLearning, name), step=step, **options)

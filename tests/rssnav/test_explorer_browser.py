@@ -1,0 +1,264 @@
+"""The explorer in a real browser: everything one can do with it, once."""
+
+from __future__ import annotations
+
+import http.client
+import re
+import shutil
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import h5py
+import pytest
+
+import floorplans
+
+playwright = pytest.importorskip("playwright.sync_api")
+pytest.importorskip("panel")
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("chrome")
+FLAGS = (
+    "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
+    "--disable-background-networking --disable-component-update --disable-sync"
+)
+PATIENCE_MS = 30_000
+COMPLETE = re.compile(r"cells, .* paths, traced in [\d.]+ s$")
+SOURCE = (1.2, 7.9)
+DESKTOP, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here")
+
+MAP_VIEW = """
+    const views = [...Bokeh.index.roots];
+    for (const view of views) views.push(...(view.child_views ?? []));
+    const map = views.find(
+      (view) => view.model.type == "Figure" && view.model.renderers.length > 5);
+"""
+PLACE = f"""([x, y]) => {{ {MAP_VIEW}
+    const box = map.canvas_view.el.getBoundingClientRect();
+    return [box.left + map.frame.x_scale.compute(x), box.top + map.frame.y_scale.compute(y)];
+}}"""
+COLUMNS = f"""(glyph) => {{ {MAP_VIEW}
+    const all = map.model.renderers.filter((renderer) => renderer.glyph.type == glyph);
+    return all.map((renderer) => [...renderer.data_source.data.x ?? []]);
+}}"""
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    """A server on any free port, in a process of its own."""
+    command = [sys.executable, "-m", "rssnav", "explore", "flat", "--port", "0", "--no-browser"]
+    server = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    try:
+        line = server.stderr.readline()
+        yield re.search(r"http://\S+", line).group()
+    finally:
+        server.terminate()
+        remarks = server.communicate(timeout=20)[1]
+    assert "Traceback" not in remarks, remarks
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with playwright.sync_playwright() as library:
+        opened = library.chromium.launch(executable_path=CHROMIUM, args=FLAGS.split())
+        yield opened
+        opened.close()
+
+
+class Tab:
+    """A page of the explorer, and what a person does on it."""
+
+    def __init__(self, browser, address: str, viewport=DESKTOP) -> None:
+        self.context = browser.new_context(viewport=viewport, accept_downloads=True)
+        self.page = self.context.new_page()
+        self.page.set_default_timeout(PATIENCE_MS)
+        self.requests, self.errors = [], []
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        for _ in range(20):
+            try:
+                self.page.goto(address)
+                break
+            except playwright.Error:
+                self.page.wait_for_timeout(250)  # the address is told just before it is open
+        self.wait_for_map()
+
+    def wait_for_map(self) -> None:
+        self.page.get_by_text(COMPLETE).wait_for()
+
+    def place(self, x: float, y: float) -> list[float]:
+        """Where a point of the plan [m] is in the window."""
+        return self.page.evaluate(PLACE, [x, y])
+
+    def columns(self, glyph: str) -> list[list[float]]:
+        """The x of everything that a kind of glyph draws on the map."""
+        return self.page.evaluate(COLUMNS, glyph)
+
+    def marks(self) -> list[float]:
+        """The x of source and start [m]."""
+        return self.columns("Scatter")[-1]
+
+    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+        (x, y), (to_x, to_y) = self.place(*start), self.place(*end)
+        self.page.mouse.move(x, y)
+        self.page.mouse.down()
+        for share in (0.1, 0.4, 0.7, 1.0):
+            self.page.mouse.move(x + share * (to_x - x), y + share * (to_y - y))
+            self.page.wait_for_timeout(60)
+        self.page.mouse.up()
+
+    def choose(self, name: str) -> None:
+        """Turn to a tab of the tools."""
+        self.page.locator(".bk-tab").get_by_text(name, exact=True).click()
+
+    def wait_until(self, expression: str) -> None:
+        self.page.wait_for_function(expression)
+
+
+@pytest.fixture(scope="module")
+def opened(browser, address) -> Iterator[Tab]:
+    tab = Tab(browser, address)
+    yield tab
+    tab.context.close()
+
+
+@pytest.fixture
+def tab(opened, address, tmp_path, request) -> Iterator[Tab]:
+    """A tab that tests share; each leaves a picture, and must not have asked elsewhere."""
+    yield opened
+    opened.page.screenshot(path=tmp_path / f"{request.node.name}.png")
+    assert not opened.errors
+    local = (address, "blob:", "data:", "about:")
+    assert [url for url in opened.requests if not url.startswith(local)] == []
+
+
+def test_hover_tells_rss_and_paths(tab) -> None:
+    x, y = tab.place(10.5, 1.5)
+    tab.page.mouse.move(x - 40, y)
+    tab.page.mouse.move(x + 30, y)
+    tab.page.get_by_text(re.compile(r"^-\d+\.\d dBm$")).wait_for()
+
+
+def test_drag_source_and_start(tab) -> None:
+    start_x = tab.marks()[1]
+    tab.drag(SOURCE, (2.5, 2.5))
+    tab.wait_for_map()
+    assert tab.marks() == [pytest.approx(2.5, abs=0.1), start_x]
+    tab.drag((start_x, 1.5), (9.4, 7.7))
+    tab.page.wait_for_timeout(500)
+    assert tab.marks()[1] == 9.5  # the cell's centre
+    tab.drag((9.5, 7.5), (30.0, 7.5))
+    tab.page.wait_for_timeout(500)
+    assert tab.marks()[1] <= 11.5  # on the floor, however far the dot was dragged
+    tab.drag((2.5, 2.5), SOURCE)
+    tab.wait_for_map()
+
+
+def test_click_a_cell_for_its_paths(tab, tmp_path) -> None:
+    tab.page.mouse.click(*tab.place(9.5, 6.5))
+    tab.page.get_by_text("(9.5, 6.5, 2) m").wait_for()
+    assert tab.page.get_by_role("row").count() == 13
+    space, plan = (tab.page.get_by_role("button", name=name, exact=True) for name in ("3D", "Plan"))
+    space.click()
+    frame = tab.page.frame_locator("iframe[title='3D']")
+    frame.get_by_text("flat: paths to (9.5, 6.5, 2) m").wait_for()
+    frame.locator("canvas").wait_for()
+    tab.page.wait_for_timeout(500)
+    tab.page.screenshot(path=tmp_path / "space.png")
+    plan.click()
+
+
+def test_train_watch_stop_and_play(tab) -> None:
+    tab.choose("Training")
+    tab.page.get_by_label("Episodes a second").select_option("50")
+    tab.page.get_by_role("button", name="Location").click()
+    train, stop = (tab.page.get_by_role("button", name=name) for name in ("Train", "Stop"))
+    train.click()
+    tab.page.get_by_text(re.compile(r"^[1-9]\d* of 1000$")).wait_for()
+    stop.click()
+    tab.page.get_by_text(re.compile(r"^Episode \d+ of 1000: step")).wait_for()
+    playwright.expect(train).to_be_enabled()
+    before = tab.columns("Scatter")[0]
+    tab.page.locator("button.first").click()
+    tab.page.get_by_text(re.compile(r"^Episode 1 of 1000: step 0 of")).wait_for()
+    tab.page.locator("button.play").click()
+    tab.page.get_by_text(re.compile(r"^Episode 2 of 1000")).wait_for()
+    assert tab.columns("Scatter")[0] != before
+    tab.page.locator("button.pause").click()
+
+
+def test_download_map_figures_and_plan(tab, tmp_path) -> None:
+    tab.choose("Download")
+    for label, name in (
+        ("Map (HDF5)", "flat.h5"),
+        ("Figure (PNG)", "flat.png"),
+        ("Figure (SVG)", "flat.svg"),
+        ("Plan (TOML)", "flat.toml"),
+    ):
+        with tab.page.expect_download() as download:
+            tab.page.get_by_text(label).click()
+        assert download.value.suggested_filename == name
+        download.value.save_as(tmp_path / name)
+    with h5py.File(tmp_path / "flat.h5") as file:
+        assert file["rss_dbm"].shape == (9, 12)
+    assert floorplans.load(tmp_path / "flat.toml").walls == floorplans.load("flat").walls
+    assert (tmp_path / "flat.png").read_bytes().startswith(b"\x89PNG")
+    assert "<svg" in (tmp_path / "flat.svg").read_text(encoding="utf-8")
+
+
+def test_upload_a_plan_and_choose_another(tab, tmp_path) -> None:
+    text = floorplans.dumps(floorplans.load("flat"))
+    tab.choose("Plan")
+    for name, content, says in (
+        ("bad.toml", "name = ", "bad.toml: not valid TOML"),
+        ("mine.toml", text.replace('"flat"', '"my flat"'), "my flat"),
+    ):
+        Path(tmp_path / name).write_text(content, encoding="utf-8")
+        tab.page.locator("input[type=file]").set_input_files(tmp_path / name)
+        tab.page.locator(".bar, .status").get_by_text(says).first.wait_for()
+    tab.wait_for_map()
+    tab.page.get_by_label("Cell [m]").fill("2")
+    tab.page.get_by_label("Cell [m]").press("Enter")
+    tab.page.get_by_text(re.compile("^24 cells")).wait_for()
+    tab.page.get_by_label("Cell [m]").fill("1")
+    tab.page.get_by_label("Cell [m]").press("Enter")
+    tab.page.get_by_label("Plan", exact=True).select_option("flat")
+    tab.page.locator(".bar b").get_by_text("flat", exact=True).wait_for()
+    tab.wait_for_map()
+
+
+def test_second_tab_on_a_phone_is_on_its_own(tab, browser, address, tmp_path) -> None:
+    phone = Tab(browser, address, PHONE)
+    phone.drag(SOURCE, (8.5, 2.5))
+    phone.wait_for_map()
+    phone.page.mouse.click(*phone.place(9.5, 6.5))
+    phone.page.get_by_text("(9.5, 6.5, 2) m").wait_for()
+    phone.page.screenshot(path=tmp_path / "phone.png", full_page=True)
+    phone.choose("Training")
+    width = phone.page.evaluate("document.documentElement.scrollWidth")
+    phone.page.screenshot(path=tmp_path / "phone-training.png", full_page=True)
+    assert phone.marks()[0] == pytest.approx(8.5, abs=0.1)
+    assert tab.marks()[0] == pytest.approx(SOURCE[0], abs=0.1)
+    phone.context.close()
+    assert width <= PHONE["width"]
+
+
+def test_only_this_computer_and_this_page_are_served(address) -> None:
+    port = int(address.rsplit(":", 1)[1].strip("/"))
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.2", port), timeout=5)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=5)
+    headers = {
+        "Connection": "Upgrade",
+        "Upgrade": "websocket",
+        "Origin": "http://elsewhere.example",
+        "Sec-WebSocket-Version": "13",
+        "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
+    }
+    connection.request("GET", "/ws", headers=headers)
+    assert connection.getresponse().status == 403
+    connection.close()
