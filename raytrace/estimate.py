@@ -33,11 +33,11 @@ LIT_RECEIVERS = 64
 FIRST_RECEIVERS = 100
 """Receivers of the coarsest lattice, about."""
 
-TELLING_PATHS = 100_000
-"""From so many paths on, the time of a sample tells the time of a path."""
+TELLING_PATHS = 50_000
+"""It is also refined for so many paths, which take long enough to tell the time of one."""
 
 SECONDS_A_PATH = 1.5e-7
-"""Otherwise a path takes this long on one thread [s]."""
+"""Where a whole map has fewer, a path takes about this long on one thread [s]."""
 
 BYTES_A_HIT = 8
 """Memory of a receiver in a beam."""
@@ -113,7 +113,8 @@ def estimate_cost(
     while True:
         sample = replace(sample, grid=_lattice(grid, step))
         near, _ = sample.trace(sample.near)
-        if step == 1 or np.count_nonzero(near.path_count) >= LIT_RECEIVERS:
+        enough = near.path_count.sum() >= TELLING_PATHS
+        if step == 1 or (enough and np.count_nonzero(near.path_count) >= LIT_RECEIVERS):
             break
         step = max(1, step // 2)
     everywhere = grid.x.size * grid.y.size / near.path_count.size
@@ -173,7 +174,7 @@ def _seconds(sample: _Sample, whole: Grid, paths: float, traced: tuple[int, floa
     n, seconds = traced
     a_path = SECONDS_A_PATH / (sample.threads or default_threads())
     if n >= TELLING_PATHS:
-        a_path = min(max((seconds - both) / n, 0.2 * a_path), 5.0 * a_path)
+        a_path = min(max((seconds - both) / n, 0.2 * a_path), 20.0 * a_path)
     return beams + sample.edge_step * adding + paths * a_path
 
 
