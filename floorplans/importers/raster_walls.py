@@ -28,8 +28,12 @@ from floorplans.importers.thinning import polylines, pruned, thinned
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+_CORNERS = ((0.0, 2.0), (1.0, 2.0), (0.0, 2.0))
+"""Passes in which corners are made one that lie no farther apart than this times the width of the
+wall, first where a line along one of the building's directions joins them, then an oblique one."""
+_OBLIQUE_DEG = 15.0
 _FEW_PIXELS = 12
-_FITTED_DEG = 10.0  # largest turn from a line's ends to its pixels
+_FITTED_DEG = 30.0  # largest turn from a line's ends to its pixels
 _WINDOW_DEG = 6.0  # half the width of a direction's peak
 _LEAST_SHARE = 0.1  # of the length of all lines, a direction of the building has
 _SIDE_DEG = 1.0  # directions this near to a side of the picture are along it
@@ -49,11 +53,14 @@ class _Net:
         Corners each line runs between.
     pixels : tuple of (k, 2) float64, m of them
         Centres (x, y) of the solid pixels nearest to each line [pixels].
+    width : (m,) float64
+        Of what is solid at each line [pixels].
     """
 
     corners: Floats
     lines: NDArray[np.int64]
     pixels: tuple[Floats, ...]
+    width: Floats
 
     @property
     def steps(self) -> Floats:
@@ -79,14 +86,23 @@ def walls_of_picture(solid: Mask, tolerance_px: float) -> list[RawWall]:
     net = _net(solid, tolerance_px)
     if not len(net.lines):
         return []
-    directions = _snapped(net, tolerance_px)
-    corners = _to_the_ends(net, _fitted(net, directions)) + 0.5
+    corners = _to_the_ends(net, _fitted(net, _snapped(net, tolerance_px)))
     return [
-        RawWall((a[0], a[1]), (b[0], b[1]), max(len(pixels) / max(length, 1.0), 1.0))
-        for (a, b), pixels, length in zip(
-            corners[net.lines].tolist(), net.pixels, np.hypot(*net.steps.T).tolist(), strict=True
+        RawWall((a[0], a[1]), (b[0], b[1]), _thickness(corners[line], pixels, width))
+        for line, (a, b), pixels, width in zip(
+            net.lines, (corners[net.lines] + 0.5).tolist(), net.pixels, net.width, strict=True
         )
     ]
+
+
+def _thickness(ends: Floats, pixels: Floats, width: float) -> float:
+    """Pixels across a line, counted over the middle of it, where it is long enough to have one."""
+    step = ends[1] - ends[0]
+    length = float(np.hypot(*step))
+    if length < 3 * width:
+        return max(width, 1.0)
+    s = (pixels - ends[0]) @ step / length**2
+    return max(float(np.sum((s > 0.25) & (s < 0.75))) / (0.5 * length), 1.0)
 
 
 def _net(solid: Mask, tolerance_px: float) -> _Net:
@@ -99,7 +115,48 @@ def _net(solid: Mask, tolerance_px: float) -> _Net:
     pieces = [piece for piece in pieces if len(piece) > 1]
     ends = np.array([point for piece in pieces for point in (piece[0], piece[-1])]).reshape(-1, 2)
     corners, number = np.unique(ends, axis=0, return_inverse=True)
-    return _Net(corners, number.reshape(-1, 2), tuple(_nearest_pixels(solid, pieces)))
+    pixels = tuple(_nearest_pixels(solid, pieces))
+    wide = [float(thickness[tuple(piece.astype(int).T[::-1])].max()) for piece in pieces]
+    net = _Net(corners, number.reshape(-1, 2), pixels, np.array(wide))
+    for share, oblique_share in _CORNERS:
+        net = _contracted(net, share, oblique_share)
+    return net
+
+
+def _contracted(net: _Net, share: float, oblique_share: float) -> _Net:
+    """Make one corner of those joined by lines shorter than a share of their width.
+
+    Thinning cuts off corners, and draws the line of a thick wall towards a wall that ends on it:
+    that gives lines little longer than the wall is thick, and oblique to the building.
+    """
+    if not len(net.lines):
+        return net
+    spread = np.where(_is_oblique(net), oblique_share, share) * net.width
+    place = {i: [i] for i in range(len(net.corners))}
+    lengths = np.hypot(*net.steps.T)
+    for k in np.argsort(lengths, kind="stable").tolist():
+        first, second = (place[i] for i in net.lines[k].tolist())
+        together = net.corners[first + second]
+        if first is not second and np.ptp(together, axis=0).max() <= spread[k]:
+            first += second
+            place |= dict.fromkeys(second, first)
+    groups = list({id(group): group for group in place.values()}.values())
+    number = np.empty(len(net.corners), dtype=np.int64)
+    for k, group in enumerate(groups):
+        number[group] = k
+    lines = number[net.lines]
+    kept = np.flatnonzero(lines[:, 0] != lines[:, 1])
+    corners = np.array([net.corners[group].mean(axis=0) for group in groups]).reshape(-1, 2)
+    pixels = tuple(net.pixels[k] for k in kept.tolist())
+    return _Net(corners, lines[kept], pixels, net.width[kept])
+
+
+def _is_oblique(net: _Net) -> Mask:
+    """Which lines run along none of the building's directions."""
+    lengths = np.hypot(*net.steps.T)
+    angles = np.arctan2(net.steps[:, 1], net.steps[:, 0])
+    off = np.abs(_turn(_main_directions(angles, lengths)[None, :] - angles[:, None]))
+    return np.array(off.min(axis=1, initial=np.pi) > np.radians(_OBLIQUE_DEG))
 
 
 def _pieces(line: LineString, tolerance_px: float) -> list[Floats]:
