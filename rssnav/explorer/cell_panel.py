@@ -14,6 +14,9 @@ from rssnav.explorer.styles import WIDGETS, decibels, pairs, problem, thousands
 from rssnav.explorer.tracing import CellPaths
 
 TOP = 12
+LINE_RADIUS = 0.002
+"""Of a path in three dimensions, as a share of the plan's diagonal."""
+
 _INVITATION = '<p class="quiet">Click a cell of the map to see its strongest paths.</p>'
 
 
@@ -57,7 +60,9 @@ def page_3d(plan: FloorPlan, found: CellPaths | None) -> str:
     title = plan.name
     if found is not None:
         lines = strongest(found)
-        add_lines(scene, "paths", lines, path_colours(found.power_dbm[: len(lines)]), 0.035)
+        x_min, y_min, x_max, y_max = plan.bounds
+        radius_m = LINE_RADIUS * float(np.hypot(x_max - x_min, y_max - y_min))
+        add_lines(scene, "paths", lines, path_colours(found.power_dbm[: len(lines)]), radius_m)
         add_points(scene, "receiver", [found.receiver], "#1a1a1a")
         x, y, z = found.receiver
         title = f"{plan.name}: paths to ({x:g}, {y:g}, {z:g}) m"

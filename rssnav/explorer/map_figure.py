@@ -34,7 +34,6 @@ from rssnav.figures import AGENT_COLOURS, INK
 from rssnav.map_picture import FREE_WALL, NO_PATH
 
 FONT = "Inter, system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
-QUIET_FOCUS = ":host(:focus), :focus { outline: none !important; }"
 FLOOR = "#fbfaf7"
 PATH_COLOURS = "YlOrRd"
 PATH_RANGE_DB = 30.0
@@ -306,7 +305,6 @@ def _empty_figure() -> figure:
     model = figure(
         sizing_mode="stretch_both",
         min_height=280,
-        stylesheets=[QUIET_FOCUS],
         match_aspect=True,
         tools=[PanTool(), WheelZoomTool(), ResetTool()],
         toolbar_location="right",

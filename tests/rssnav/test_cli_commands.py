@@ -30,6 +30,7 @@ COMMANDS = (
     ("maps",),
     ("paths",),
     ("train",),
+    ("explore",),
     ("experiments",),
     ("report",),
     ("doctor",),

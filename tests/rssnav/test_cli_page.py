@@ -12,7 +12,7 @@ from cli_plans import all_commands, run
 PAGE = (Path(__file__).parents[2] / "docs" / "cli.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^## rssnav ([a-z ]+)\n(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 SECTIONS = dict(SECTION.findall(PAGE))
-LONG = ("maps", "experiments", "report")
+LONG = ("maps", "explore", "experiments", "report")
 
 
 COMMANDS = all_commands()

@@ -11,6 +11,7 @@ from threading import Event
 
 import numpy as np
 import pytest
+from bokeh.models import HoverTool
 from cli_plans import run
 
 import floorplans
@@ -22,7 +23,7 @@ from rssnav.explorer.cell_panel import page_3d, strongest
 from rssnav.explorer.downloads import figure_file, file_name, map_file, plan_file
 from rssnav.explorer.flight_player import FRAMES, first_frames, place_of
 from rssnav.explorer.limits import Limits
-from rssnav.explorer.map_figure import path_colours
+from rssnav.explorer.map_figure import MapFigure, path_colours
 from rssnav.explorer.page import News
 from rssnav.explorer.server import host_names, with_port
 from rssnav.explorer.session import Session, suggested_goal_dbm
@@ -368,6 +369,32 @@ def test_goal_suits_the_map(session) -> None:
     strongest_dbm = radio_map.rss_dbm.max()
     assert suggested_goal_dbm(radio_map, strongest_dbm - 5.0) == strongest_dbm - 5.0
     assert strongest_dbm - 2.0 < suggested_goal_dbm(radio_map, 0.0) < strongest_dbm
+
+
+def test_what_a_map_carries_shows_under_the_pointer(session) -> None:
+    radio_map = session.complete_map.radio_map
+    with_spread = replace(radio_map, delay_spread_s=np.zeros_like(radio_map.rss_dbm))
+    shown = MapFigure(FLAT, 2.0, on_move=print, on_drag=print, on_tap=print)
+    hover = shown.model.select_one(HoverTool)
+    for drawn, names in (
+        (radio_map, ["RSS", "paths", "at"]),
+        (with_spread, ["RSS", "paths", "delay spread", "at"]),
+    ):
+        shown.show_map(drawn)
+        assert [name for name, _ in hover.tooltips] == names
+
+
+def test_a_mark_tells_where_it_was_dropped_and_comes_back_when_deleted() -> None:
+    told = []
+    shown = MapFigure(
+        FLAT, 2.0, on_move=lambda *place: told.append(place), on_drag=print, on_tap=print
+    )
+    marks = shown.model.renderers[-1].data_source
+    marks.data = {**marks.data, "x": [3.0, FLAT.start[0]]}
+    assert told == [("source", 3.0, FLAT.source[1])]
+    marks.data = {name: values[:1] for name, values in marks.data.items()}
+    assert marks.data["x"] == [FLAT.source[0], FLAT.start[0]]
+    assert len(told) == 1
 
 
 def test_news_compares_with_the_last_look() -> None:
