@@ -29,6 +29,7 @@ from raytrace.materials import (
 )
 from raytrace.store import FORMAT
 from raytrace.trace import TRACER_VERSION
+from rssnav.map_cost import announcement
 
 Progress = Callable[[int, int], None]
 Notice = Callable[[str], None]
@@ -135,13 +136,19 @@ class MapRequest:
                 return f"made {what}"
         return None
 
-    def compute(self, threads: int | None = None, progress: Progress | None = None) -> RadioMap:
-        """Trace the map and mark it with its plan."""
+    def compute(
+        self,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        notice: Notice | None = None,
+    ) -> RadioMap:
+        """Trace the map and mark it with its plan; say so before if it will take long."""
         scene = scene_of(self.plan, self.edition)
+        made_with = scene, self.transmitter, self.grid, self.config
         try:
-            radio_map = compute_radio_map(
-                scene, self.transmitter, self.grid, self.config, threads=threads, progress=progress
-            )
+            if notice is not None and (words := announcement(*made_with, threads)) is not None:
+                notice(words)
+            radio_map = compute_radio_map(*made_with, threads=threads, progress=progress)
         except SceneError as error:
             raise SceneError(f"plan {self.plan.name!r}: {error}") from error
         return radio_map.with_plan(floorplans.dumps(self.plan), self.plan.sha256)
@@ -187,7 +194,8 @@ def make_map(
     progress : callable, optional
         Called as ``progress(done, total)`` while tracing.
     notice : callable, optional
-        Called with a sentence about the file: that it is current, or why it is made again.
+        Called with a sentence: that the file is current, why it is made again, or that tracing
+        will take longer than a minute.
     force : bool
         Make the map again, and replace whatever is at `path`.
 
@@ -213,11 +221,11 @@ def make_map(
         edition_of(plan, edition),
     )
     if path is None:
-        return request.compute(threads, progress)
+        return request.compute(threads, progress, notice)
     path = Path(path)
     if not force and (current := _current_map(request, path, notice)) is not None:
         return current
-    radio_map = request.compute(threads, progress)
+    radio_map = request.compute(threads, progress, notice)
     radio_map.save(path)
     return radio_map
 

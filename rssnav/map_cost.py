@@ -1,0 +1,58 @@
+"""Saying beforehand that a map will take long."""
+
+from raytrace import CostEstimate, Grid, Scene, TraceConfig, Transmitter, estimate_cost
+
+LONG_S = 60.0
+"""A map that takes longer is announced [s]."""
+
+MOST_QUICK_WORK = 2e6
+"""Maps of less `work` are not estimated: the largest of them take some ten seconds."""
+
+
+def work(scene: Scene, grid: Grid, config: TraceConfig) -> float:
+    """Return a rough measure of a map's work: cells times edges, doubled by every reflection."""
+    n_edges = len(scene.upright_edges) + len(scene.level_edges)
+    edges = 1 + n_edges * config.max_diffractions
+    return grid.x.size * grid.y.size * edges * 2.0 ** (config.max_reflections - 6)
+
+
+def announcement(
+    scene: Scene,
+    source: Transmitter,
+    grid: Grid,
+    config: TraceConfig,
+    threads: int | None = None,
+) -> str | None:
+    """Say what a map will take if that is long, else return None.
+
+    Raises
+    ------
+    SceneError
+        Where the transmitter is not inside the building.
+    """
+    if work(scene, grid, config) < MOST_QUICK_WORK:
+        return None
+    cost = estimate_cost(scene, source, grid, config, threads=threads)
+    return sentence(cost, grid) if cost.seconds > LONG_S else None
+
+
+def sentence(cost: CostEstimate, grid: Grid) -> str:
+    """Say an estimate in words."""
+    cells = grid.x.size * grid.y.size
+    return (
+        f"this map will take about {_duration(cost.seconds)}: some {_count(cost.paths)} paths over "
+        f"{_count(cells)} cells; larger cells or fewer reflections make it shorter"
+    )
+
+
+def _duration(seconds: float) -> str:
+    for unit, length in (("hours", 3600.0), ("minutes", 60.0)):
+        if seconds >= 2.0 * length:
+            return f"{seconds / length:.0f} {unit}"
+    return f"{seconds:.0f} seconds"
+
+
+def _count(number: int) -> str:
+    if number >= 10_000_000:
+        return f"{number / 1e6:.0f} million"
+    return f"{number:,}".replace(",", " ")
