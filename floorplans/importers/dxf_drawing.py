@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import hypot, isfinite
 from pathlib import Path
@@ -77,8 +78,9 @@ def load_document(path: Path) -> Document:
         When the file is no DXF file, too large, or its blocks explode into too many objects.
     """
     _check_file(path)
-    document = _load(path)
-    _check_blocks(document)
+    with _damage_told():
+        document = _load(path)
+        _check_blocks(document)
     return document
 
 
@@ -97,8 +99,10 @@ def read_content(document: Document, layers: Mapping[str, str], tolerance: float
     -------
     Content
     """
-    content = Content(hidden={layer.dxf.name for layer in document.layers if _is_hidden(layer)})
-    _Collector(content, layers, tolerance).collect(document.modelspace(), None, 0)
+    with _damage_told():
+        hidden = {layer.dxf.name for layer in document.layers if _is_hidden(layer)}
+        content = Content(hidden=hidden)
+        _Collector(content, layers, tolerance).collect(document.modelspace(), None, 0)
     return content
 
 
@@ -117,6 +121,24 @@ def _check_file(path: Path) -> None:
 _LESS = "save one storey, with the layers of its walls, doors and windows only"
 
 
+@contextmanager
+def _damage_told() -> Generator[None]:
+    """Turn what the library raises for a damaged file, in many ways, into one error."""
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        yield
+    except (PlanError, MemoryError):
+        raise
+    except DXFError as error:
+        raise PlanError(f"not a DXF file that can be read: {error}") from error
+    except Exception as error:
+        raise PlanError(
+            f"the file is damaged ({type(error).__name__}: {error}); open and save it with a CAD "
+            "program"
+        ) from error
+
+
 def _load(path: Path) -> Document:
     """Read a document, damaged ones as far as possible."""
     import ezdxf.filemanagement
@@ -124,22 +146,10 @@ def _load(path: Path) -> Document:
     from ezdxf.lldxf.const import DXFError
 
     try:
-        try:
-            document = ezdxf.filemanagement.readfile(path)
-        except (DXFError, UnicodeDecodeError):
-            document, _ = recover.readfile(path)
-    except DXFError as error:
-        raise PlanError(f"not a DXF file that can be read: {error}") from error
-    except OSError as error:
-        raise PlanError(f"the file cannot be read: {error.strerror or error}") from error
-    except MemoryError:
-        raise
-    except Exception as error:  # a damaged file makes the library fail in many ways
-        raise PlanError(
-            f"the file is damaged ({type(error).__name__}: {error}); open and save it with a CAD "
-            "program"
-        ) from error
-    return document
+        return ezdxf.filemanagement.readfile(path)
+    except (DXFError, OSError, ValueError):
+        document, _ = recover.readfile(path)
+        return document
 
 
 def _is_hidden(layer: Any) -> bool:
@@ -188,6 +198,8 @@ class _Collector:
     def collect(self, entities: Iterable[DXFGraphic], within: str | None, depth: int) -> None:
         """Take in entities; those of a block on layer 0 are on the layer `within`."""
         for entity in entities:
+            if not entity.is_supported_dxf_attrib("layer"):
+                continue
             layer = str(entity.dxf.get("layer", "0"))
             layer = within if layer == "0" and within is not None else layer
             if layer in self._content.hidden and layer not in self._layers:
@@ -209,7 +221,7 @@ class _Collector:
 
     def _collect_insert(self, insert: Any, layer: str, depth: int) -> None:
         layer_kind = self._meaning(layer).kind
-        name_kind = meaning_of(insert.dxf.name).kind
+        name_kind = meaning_of(str(insert.dxf.get("name", ""))).kind
         named = name_kind in ("door", "window")
         kind = name_kind if named else layer_kind
         if layer_kind == "ignore" or depth >= _MAX_DEPTH:
@@ -232,7 +244,7 @@ class _Collector:
 
     def _block(self, insert: Any, depth: int) -> tuple[Curve, ...]:
         """Lines of an insert's block and of those in it, in the block's own coordinates."""
-        name = str(insert.dxf.name)
+        name = str(insert.dxf.get("name", ""))
         if name not in self._blocks:
             self._blocks[name] = ()
             block = insert.block()

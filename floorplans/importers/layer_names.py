@@ -41,9 +41,9 @@ _WORDS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
         "stuetz", "pilar", "pilast", "kolom", "poteau",
     )),
     ("ignore", (
-        "sheet", "frame", "grid", "axis", "axe", "achs", "patt", "symb", "plant", "tree", "san ", "sanit",
-        "plumb", "fixt", "equip", "light", "elec", "hvac", "duct", "pipe", "stair", "trepp",
-        "escal", "floor", "boden", "ceil", "decke", "roof", "dach", "area", "room", "raum",
+        "sheet", "frame", "grid", "axis", "axe", "achs", "patt", "symb", "plant", "tree", "san ",
+        "sanit", "plumb", "fixt", "equip", "light", "elec", "hvac", "duct", "pipe", "stair",
+        "trepp", "escal", "floor", "boden", "ceil", "decke", "roof", "dach", "area", "room", "raum",
         "space", "zone", "overhead", "ovhd", "rail", "appl", "cabinet", "casework", "logo", "clng",
         "flor", "evtr", "lift",
     )),
