@@ -334,8 +334,9 @@ ENTITIES = ("LINE", "ARC", "INSERT", "SPLINE", "ELLIPSE", "CIRCLE", "HATCH", "ML
 def mutated(text: str, rng: random.Random) -> str:
     """Text of a drawing with values replaced, and records dropped, doubled and renamed."""
     rows = text.split("\n")
+    begin = rows.index("BLOCKS") // 2
     for _ in range(rng.choice((1, 5, 20))):
-        at = 2 * rng.randrange(rows.index("BLOCKS") // 2, len(rows) // 2 - 40)
+        at = 2 * rng.randrange(begin, len(rows) // 2 - 40)
         match rng.randrange(5):
             case 0:
                 rows[at + 1] = rng.choice(EXTREMES)
@@ -351,7 +352,7 @@ def mutated(text: str, rng: random.Random) -> str:
 
 
 @pytest.mark.filterwarnings("ignore")  # the library warns of some damage before it raises
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(12))
 def test_mutated_drawings_raise_nothing_but_plan_errors(seed: int, tmp_path: Path):
     rng = random.Random(seed)
     drawings = (draw.flat_of_line_pairs, draw.flat_in_nested_blocks, draw.flat_of_single_lines)
@@ -364,7 +365,7 @@ def test_mutated_drawings_raise_nothing_but_plan_errors(seed: int, tmp_path: Pat
 def test_any_bytes_after_the_first_raise_nothing_but_plan_errors(tmp_path: Path):
     rng = random.Random(3)
     data = draw.save(draw.flat_of_bodies(), tmp_path).read_bytes()
-    for _ in range(20):
+    for _ in range(10):
         at = rng.randrange(20, len(data))
         (tmp_path / "broken.dxf").write_bytes(data[:at] + rng.randbytes(40) + data[at + 40 :])
         with suppress(PlanError):
