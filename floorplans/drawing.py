@@ -37,6 +37,11 @@ MIN_WIDTH = 0.004
 
 FLOOR = "#fbfaf7"
 
+PAGE_IN = 7.16
+"""Width of both columns of a two-column page [inch]."""
+
+_LABELS_IN = 0.45
+
 Quads = list[NDArray[np.float64]]
 
 
@@ -61,7 +66,7 @@ def draw_plan(plan: FloorPlan, ax: Axes) -> None:
     _set_up_axes(plan, ax)
 
 
-def save_plan_picture(plan: FloorPlan, path: str | Path) -> None:
+def save_plan_picture(plan: FloorPlan, path: str | Path, *, width_in: float = PAGE_IN) -> None:
     """Draw a plan from above into a file.
 
     Parameters
@@ -69,13 +74,16 @@ def save_plan_picture(plan: FloorPlan, path: str | Path) -> None:
     plan : FloorPlan
     path : str or Path
         Its suffix names the format: .png, .svg or .pdf.
+    width_in : float
+        Width of the picture, about [inch]; that of a page of two columns by default. A plan that
+        is higher than wide is drawn narrower.
     """
     x_min, y_min, x_max, y_max = plan.bounds
     width, height = x_max - x_min, y_max - y_min
-    scale = 8 / max(width, 1.2 * height)
-    figure = Figure(figsize=(width * scale + 1, height * scale + 1))
-    draw_plan(plan, figure.add_subplot())
-    figure.savefig(path, dpi=200, bbox_inches="tight")
+    scale = (width_in - _LABELS_IN) / max(width, 1.2 * height)
+    figure = Figure(figsize=(width * scale + _LABELS_IN, height * scale + _LABELS_IN))
+    draw_plan(plan, figure.add_axes((0.0, 0.0, 1.0, 1.0)))
+    figure.savefig(path, dpi=300, bbox_inches="tight", pad_inches=0.03)
 
 
 def _draw_floor(plan: FloorPlan, ax: Axes) -> None:
@@ -152,7 +160,7 @@ def _draw_scale_bar(plan: FloorPlan, ax: Axes) -> None:
         textcoords="offset points",
         ha="right",
         va="center",
-        fontsize=9,
+        fontsize="medium",
     )
     label.set_gid("scale bar")
 
@@ -175,7 +183,7 @@ def _draw_legend(plan: FloorPlan, ax: Axes) -> None:
         bbox_transform=ax.transAxes + below,
         ncols=min(len(handles), 5),
         frameon=False,
-        fontsize=9,
+        fontsize="medium",
     )
 
 

@@ -149,5 +149,5 @@ def _draw_frame_and_legend(plan: FloorPlan, ax: Axes3D) -> None:
         bbox_transform=ax.transData,
         ncols=min(len(handles), 4),
         frameon=False,
-        fontsize=9,
+        fontsize="medium",
     )

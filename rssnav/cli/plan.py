@@ -9,7 +9,7 @@ import floorplans
 from floorplans import FloorPlan
 from rssnav.cli import plan_check, plan_export, plan_import, plan_new
 from rssnav.cli.console import print_json, print_table
-from rssnav.cli.options import PICTURE_SUFFIXES, Json, Plan, check_suffix, examples
+from rssnav.cli.options import PICTURE_SUFFIXES, Json, Plan, Style, check_suffix, examples
 from rssnav.cli.plan_facts import (
     count_openings,
     facts_of,
@@ -87,6 +87,7 @@ def show(
             show_default="2d; 3d for .html and .glb",
         ),
     ] = None,
+    style: Style = None,
 ) -> None:
     """Draw a plan into a file, or sketch it in the terminal where none is given."""
     check_suffix(output, PICTURE_SUFFIXES + SOLID_SUFFIXES, "--output")
@@ -105,15 +106,18 @@ def show(
         print(sketch(loaded))
         print_facts(loaded)
         return
-    _draw(loaded, output, view)
+    _draw(loaded, output, view, style)
     print(f"wrote {output}")
 
 
-def _draw(plan: FloorPlan, output: Path, view: Literal["2d", "3d"] | None) -> None:
+def _draw(
+    plan: FloorPlan, output: Path, view: Literal["2d", "3d"] | None, style: str | None
+) -> None:
     from floorplans.drawing import save_plan_picture
     from floorplans.viewer_3d import plan_scene, save_scene
+    from rssnav.figures import chosen_style, drawing
 
-    with whole_file(output) as beside:
+    with whole_file(output) as beside, chosen_style(style), drawing():
         if output.suffix.lower() in SOLID_SUFFIXES:
             save_scene(plan_scene(plan), beside, plan.name)
         elif view == "3d":
@@ -127,9 +131,10 @@ def _draw_walls_in_3d(plan: FloorPlan, path: Path) -> None:
     from mpl_toolkits.mplot3d import Axes3D
 
     from floorplans.drawing import draw_plan_3d
+    from rssnav.figures import DPI, PAGE_IN
 
-    figure = Figure(figsize=(9.0, 6.0))
+    figure = Figure(figsize=(PAGE_IN, 4.8))
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
     assert isinstance(ax, Axes3D)
     draw_plan_3d(plan, ax)
-    figure.savefig(path, dpi=200, bbox_inches="tight")
+    figure.savefig(path, dpi=DPI, bbox_inches="tight")

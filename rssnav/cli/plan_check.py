@@ -31,6 +31,7 @@ def add_to(parent: typer.Typer) -> None:
         epilog=examples(
             "rssnav plan check flat",
             "rssnav plan check scenario1 --json",
+            "rssnav plan new --size 12x9 -o my.toml",
             "rssnav plan check my.toml --fix",
         )
     )(check)
