@@ -20,6 +20,8 @@ SOURCE_HEIGHT_M = 1.5
 
 _STEPS = ((1, 0), (0, 1), (1, 1), (1, -1))
 _START_CLEAR_M = 0.6
+"""A start is at least as far off the walls [m], or else as far as any cell is."""
+_AS_CLEAR_M = 0.15
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,9 @@ def place(
     else:
         at = int(np.hypot(*(cells - np.array(source)).T).argmin())
     way_m = dijkstra(ways, directed=False, indices=at)
-    usable = np.isfinite(way_m) & (clear_m >= _START_CLEAR_M)
+    clearances = np.minimum(clear_m, _START_CLEAR_M)
+    away = np.isfinite(way_m) & (way_m > 0)
+    usable = away & (clearances >= clearances[away].max(initial=0.0) - _AS_CLEAR_M)
     far = int(np.where(usable, way_m, -1.0).argmax()) if usable.any() else at
     return Places(source, (float(cells[far][0]), float(cells[far][1])), float(way_m[far]))
 
