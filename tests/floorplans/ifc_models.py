@@ -74,6 +74,25 @@ class Model:
             spatial.assign_container(self.file, products=[wall], relating_structure=self.storey)
         return wall
 
+    def add_wall_of_faces(self, start: Point, end: Point, thickness_m: float, height_m: float):
+        """Add a wall along x or y whose body is six faces."""
+        wall = root.create_entity(self.file, ifc_class="IfcWall")
+        (x0, y0), (x1, y1), half = start, end, thickness_m / 2
+        dx, dy = (0.0, half) if y0 == y1 else (half, 0.0)
+        low = [(x0 - dx, y0 - dy), (x1 - dx, y1 - dy), (x1 + dx, y1 + dy), (x0 + dx, y0 + dy)]
+        vertices = [(x, y, z) for z in (0.0, height_m) for x, y in low]
+        sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
+        body = geometry.add_mesh_representation(
+            self.file,
+            context=self.contexts["Body"],
+            vertices=[vertices],
+            faces=[[[3, 2, 1, 0], [4, 5, 6, 7], *sides]],
+        )
+        geometry.assign_representation(self.file, product=wall, representation=body)
+        self._place(wall, (0.0, 0.0), (1.0, 0.0), 0.0)
+        spatial.assign_container(self.file, products=[wall], relating_structure=self.storey)
+        return wall
+
     def add_ring(self, corners: list[Point], **options):
         sides = zip(corners, corners[1:] + corners[:1], strict=True)
         return [self.add_wall(start, end, **options) for start, end in sides]
@@ -185,9 +204,9 @@ class Model:
 HOUSE: list[Point] = [(0.0, 0.0), (8.0, 0.0), (8.0, 5.0), (0.0, 5.0)]
 
 
-def house(prefix: str | None = "MILLI") -> Model:
+def house(prefix: str | None = "MILLI", schema: str = "IFC4") -> Model:
     """Return a storey of 8 m x 5 m: a partition with a door, an entrance, a window, slabs."""
-    model = Model(prefix)
+    model = Model(prefix, schema)
     model.add_storey("Ground floor")
     south, east, north, west = model.add_ring(HOUSE, thickness_m=0.3)
     for wall in (south, east, north, west):

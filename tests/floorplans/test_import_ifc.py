@@ -9,6 +9,7 @@ from math import hypot, pi
 
 import pytest
 from ifc_models import HOUSE, Model, Point, house
+from ifcopenshell.api.owner import settings
 
 from floorplans import PlanError, loads
 from floorplans.importers import ImportOptions, import_plan
@@ -72,6 +73,37 @@ def test_openings_lie_where_they_were_cut(house_file) -> None:
 def test_unit_of_the_file_changes_nothing(house_file, tmp_path) -> None:
     in_metres = house(prefix=None).write(tmp_path / "house.ifc")
     assert import_plan(in_metres).plan == import_plan(house_file).plan
+
+
+def test_older_schema_changes_nothing(house_file, tmp_path, monkeypatch) -> None:
+    def user(file):
+        return file.createIfcPersonAndOrganization(
+            file.createIfcPerson(FamilyName="Doe"), file.createIfcOrganization(Name="Doe")
+        )
+
+    def application(file):
+        return file.createIfcApplication(file.createIfcOrganization(Name="Doe"), "1", "test", "t")
+
+    monkeypatch.setattr(settings, "get_user", user)
+    monkeypatch.setattr(settings, "get_application", application)
+    older = house(schema="IFC2X3").write(tmp_path / "house.ifc")
+    assert "IFC2X3" in older.read_text()
+    assert import_plan(older).plan == import_plan(house_file).plan
+
+
+@pytest.mark.parametrize("schema", ["IFC4", "IFC4X3"])
+def test_wall_of_faces_is_read_like_others(tmp_path, schema) -> None:
+    model = Model(schema=schema)
+    model.add_storey("Hall")
+    model.add_ring(HALL)
+    model.add_wall_of_faces((2.0, 0.0), (2.0, 2.5), 0.15, 2.7)
+    plan = import_plan(model.write(tmp_path / "hall.ifc")).plan
+    spur = next(wall for wall in plan.walls if wall.length_m < 3.0)
+    assert sorted((spur.start, spur.end)) == [
+        pytest.approx((2.0, 0.0)),
+        pytest.approx((2.0, 2.5)),
+    ]
+    assert spur.thickness_m == pytest.approx(0.15)
 
 
 def test_written_plan_reads_back_and_tells_what_was_assumed(house_file) -> None:
