@@ -23,9 +23,10 @@ def add_to(parent: typer.Typer) -> None:
     parent.command(
         "import",
         epilog=examples(
-            "rssnav plan import office.dxf -o office.toml",
-            "rssnav plan import office.dxf -o office.toml --unit mm --layer 'A-GLAZ*=wall:glass'",
-            "rssnav plan import map.yaml -o lab.toml --height 2.8 --wall-material brick",
+            "rssnav plan export flat -o flat.dxf",
+            "rssnav plan import flat.dxf -o my.toml --layer 'WALL-CHIP*=wall:chipboard'",
+            "rssnav plan export flat -o flat.yaml",
+            "rssnav plan import flat.yaml -o lab.toml --height 2.6 --wall-material brick",
         ),
     )(import_file)
 
