@@ -147,7 +147,19 @@ def _covers(longer: Axis, axis: Axis) -> bool:
 
 
 def _merged(stretches: list[_Stretch], is_solid: Callable[[float, float], bool]) -> list[_Stretch]:
-    """Join neighbours of like thickness, fillings with any; let the others touch."""
+    """Join neighbours of like thickness, then short ones and fillings with any.
+
+    In this order, because a long wall is often made of pieces that are short one by one.
+    """
+    return _joined(_joined(stretches, is_solid, _same_thickness), is_solid, _alike)
+
+
+def _joined(
+    stretches: list[_Stretch],
+    is_solid: Callable[[float, float], bool],
+    alike: Callable[[_Stretch, _Stretch], bool],
+) -> list[_Stretch]:
+    """Join neighbours that are alike; let the others touch where there is solid between them."""
     done = stretches[:1]
     for following in stretches[1:]:
         last = done[-1]
@@ -155,7 +167,7 @@ def _merged(stretches: list[_Stretch], is_solid: Callable[[float, float], bool])
             continue
         if not is_solid(last.high, following.low):
             done.append(following)
-        elif _alike(last, following):
+        elif alike(last, following):
             like = max(last, following, key=lambda part: (not part.is_filling, part.length_m))
             done[-1] = replace(like, low=last.low, high=following.high)
         else:
@@ -165,7 +177,11 @@ def _merged(stretches: list[_Stretch], is_solid: Callable[[float, float], bool])
     return done
 
 
+def _same_thickness(a: _Stretch, b: _Stretch) -> bool:
+    low, high = sorted((a.thickness_m, b.thickness_m))
+    return a.is_filling == b.is_filling and high <= _LIKE * low
+
+
 def _alike(a: _Stretch, b: _Stretch) -> bool:
     short = any(stretch.length_m < _SHORT * stretch.thickness_m for stretch in (a, b))
-    low, high = sorted((a.thickness_m, b.thickness_m))
-    return short or a.is_filling or b.is_filling or high <= _LIKE * low
+    return short or a.is_filling or b.is_filling or _same_thickness(a, b)
