@@ -14,7 +14,7 @@ from floorplans.inspection import Finding
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
 from rssnav.planning import shortest_path
-from rssnav.world import GOAL_DISTANCE_M, GridWorld, WorldError
+from rssnav.world import GOAL_DISTANCE_M, GridWorld
 
 SPEEDS = (1, 2, 4)
 
@@ -54,21 +54,19 @@ def reaches(plan: FloorPlan, speeds: tuple[int, ...] = SPEEDS) -> tuple[Reach, .
         Where the source can be reached at none of the speeds.
     """
     radio_map = _map_without_readings(plan)
-    found: list[Reach] = []
-    last_error: WorldError | None = None
-    for speed in speeds:
-        try:
-            world = GridWorld.from_map(plan, radio_map, speed)
-        except WorldError as error:
-            last_error = error
-            found.append(Reach(speed, None, None, np.empty((0, 2)), 0))
-            continue
-        path = shortest_path(world, world.distance_m < GOAL_DISTANCE_M)
-        missed, n_cells = _missed(plan, world, radio_map.grid)
-        found.append(Reach(speed, path.steps, path.length_m, missed, n_cells))
-    if last_error is not None and all(reach.steps is None for reach in found):
-        raise last_error
-    return tuple(found)
+    found = tuple(_reach(plan, radio_map, speed) for speed in speeds)
+    if all(reach.steps is None for reach in found):
+        GridWorld.from_map(plan, radio_map, speeds[-1])  # raises, and says what would be right
+    return found
+
+
+def _reach(plan: FloorPlan, radio_map: RadioMap, speed: int) -> Reach:
+    world = GridWorld.from_map(plan, radio_map, speed, goal_distance_m=np.inf)
+    goal = world.distance_m < GOAL_DISTANCE_M
+    if not goal.any():
+        return Reach(speed, None, None, np.empty((0, 2)), 0)
+    path = shortest_path(world, goal)
+    return Reach(speed, path.steps, path.length_m, *_missed(plan, world, radio_map.grid))
 
 
 def unreached(reach: Reach) -> Finding | None:
