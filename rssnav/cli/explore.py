@@ -1,5 +1,6 @@
 """``rssnav explore``: a page in the browser to drag a source and train a UAV."""
 
+import re
 from typing import Annotated
 
 import typer
@@ -10,6 +11,7 @@ from rssnav.cli.options import Plan, examples
 
 PORT = 5006
 ADDRESS = "127.0.0.1"
+ORIGIN = re.compile(r"[\w.-]+(:\d{1,5})?", re.ASCII)
 MISSING = 'the explorer needs Panel and Bokeh; install them with `pip install "rssnav[explore]"`'
 
 
@@ -19,6 +21,13 @@ def add_to(parent: typer.Typer) -> None:
         "explore",
         epilog=examples("rssnav explore", "rssnav explore scenario1 --port 8000 --no-browser"),
     )(explore)
+
+
+def _check_origin(origin: str) -> str:
+    """Refuse what is not HOST or HOST:PORT."""
+    if not ORIGIN.fullmatch(origin):
+        raise typer.BadParameter(f"{origin!r} is not HOST or HOST:PORT, such as lab.example:5006.")
+    return origin
 
 
 def explore(
@@ -40,6 +49,7 @@ def explore(
         typer.Option(
             "--allow-origin",
             metavar="HOST[:PORT]",
+            parser=_check_origin,
             help="Another name under which browsers may open the page; may be repeated.",
             show_default=False,
         ),

@@ -17,6 +17,7 @@ from cli_plans import run
 import floorplans
 import rssnav
 from floorplans import PlanError
+from floorplans.geojson_plan import dumps_geojson
 from raytrace import RadioMap, TraceConfig
 from rssnav.explorer.background import NewestOnly, SupersededError
 from rssnav.explorer.cell_panel import page_3d, strongest
@@ -242,6 +243,18 @@ def test_upload_that_is_refused(name, content, says) -> None:
         read_upload(name, content)
 
 
+def test_a_file_of_another_program_is_read() -> None:
+    assert read_upload("flat.geojson", dumps_geojson(FLAT).encode()) == FLAT
+
+
+def test_a_reader_gets_no_more_than_its_time_and_memory() -> None:
+    content = dumps_geojson(FLAT).encode()
+    with pytest.raises(PlanError, match=r"not read within 0\.01 s"):
+        read_upload("flat.geojson", content, Limits(reading_s=0.01))
+    with pytest.raises(PlanError):
+        read_upload("flat.geojson", content, Limits(reading_bytes=30_000_000))
+
+
 def test_walls_of_an_upload_are_counted_before_they_are_checked() -> None:
     rows = "".join(f"[{x}, 0], " for x in range(3000))
     text = TOML + f'\n[[walls]]\npoints = [{rows}]\nmaterial = "nonsense"\n'
@@ -438,3 +451,9 @@ def test_command_refuses_a_port_in_use() -> None:
         result = run("explore", "flat", "--no-browser", "--port", str(taken.getsockname()[1]))
     assert result.exit_code == 1
     assert "--port" in result.stderr
+
+
+def test_command_refuses_an_origin_with_a_scheme() -> None:
+    result = run("explore", "flat", "--no-browser", "--allow-origin", "http://lab")
+    assert result.exit_code == 2
+    assert "HOST:PORT" in result.output + result.stderr
