@@ -22,6 +22,9 @@ Vertex = tuple[float, float]
 TOUCHING_M = 1e-8
 """A wall end this near another wall meets it [m]: rounding, no mistake."""
 
+ROUNDED_M = 1e-6
+"""A move by less is that of a coordinate rounded in a file, and not told [m]."""
+
 NEAR_M = 1e-3
 """A wall end this near another wall is taken to meet it [m]."""
 
@@ -47,8 +50,9 @@ def join_near_walls(panels: Sequence[Panel]) -> list[Panel]:
     moves = list(_moves(panels))
     for panel, side, to, _ in moves:
         joined[panel] = joined[panel]._replace(**{("start", "end")[side]: to})
-    if moves:
-        warnings.warn(_sentence(panels, moves), SceneWarning, stacklevel=2)
+    told = [move for move in moves if _moved_by(panels, move) > ROUNDED_M]
+    if told:
+        warnings.warn(_sentence(panels, told), SceneWarning, stacklevel=2)
     return joined
 
 
@@ -93,11 +97,16 @@ def _sentence(panels: Sequence[Panel], moves: Sequence[_Move]) -> str:
 
 def _in_words(panels: Sequence[Panel], move: _Move) -> str:
     panel, other = panels[move.panel], panels[move.other]
-    by = _length(move.to - (panel.start, panel.end)[move.side])
+    by_mm = 1e3 * _moved_by(panels, move)
     return (
-        f"the wall {_stretch(panel)} by {by * 1e3:.3g} mm at ({move.to[0]:g}, {move.to[1]:g}), "
+        f"the wall {_stretch(panel)} by {by_mm:.3g} mm at ({move.to[0]:g}, {move.to[1]:g}), "
         f"onto the wall {_stretch(other)}"
     )
+
+
+def _moved_by(panels: Sequence[Panel], move: _Move) -> float:
+    panel = panels[move.panel]
+    return _length(move.to - (panel.start, panel.end)[move.side])
 
 
 def _stretch(panel: Panel) -> str:
