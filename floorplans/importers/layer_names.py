@@ -107,9 +107,11 @@ def meaning_of(name: str, layers: Mapping[str, str] | None = None) -> Meaning:
     words = _words(name)
     material = _first(words, _MATERIAL_WORDS)
     kind: Kind | None = _first(words, _WORDS)
-    if kind is None:
-        return Meaning("wall", material) if material is not None else Meaning(None)
-    return Meaning(kind, material if kind == "wall" else None)
+    if kind == "wall":
+        return Meaning("wall", _named_material(words) or material)
+    if kind is None and material is not None:
+        return Meaning("wall", material)
+    return Meaning(kind)
 
 
 def material_named(name: str) -> str | None:
@@ -142,6 +144,13 @@ def _words(name: str) -> list[str]:
     plain = unicodedata.normalize("NFKD", spaced.translate(_PLAIN))
     letters = "".join(c for c in plain if not unicodedata.combining(c))
     return re.findall(r"[a-z]+", letters.casefold())
+
+
+def _named_material(words: list[str]) -> str | None:
+    """Return the material whose own name is among the words, the longest name first."""
+    text = f" {' '.join(words)} "
+    named = [name for name in MATERIALS if f" {name.replace('_', ' ')} " in text]
+    return max(named, key=len, default=None)
 
 
 def _first(words: list[str], lists: tuple[tuple[T, tuple[str, ...]], ...]) -> T | None:

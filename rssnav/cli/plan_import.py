@@ -24,9 +24,8 @@ def add_to(parent: typer.Typer) -> None:
         "import",
         epilog=examples(
             "rssnav plan export flat -o flat.dxf",
-            "rssnav plan import flat.dxf -o my.toml --layer 'WALL-CHIP*=wall:chipboard'",
-            "rssnav plan export flat -o flat.yaml",
-            "rssnav plan import flat.yaml -o lab.toml --height 2.6 --wall-material brick",
+            "rssnav plan import flat.dxf -o my.toml --height 2.6",
+            "rssnav plan import flat.dxf -o wood.toml --layer 'WALL*=wall:wood'",
         ),
     )(import_file)
 

@@ -236,6 +236,8 @@ def test_layers_that_are_off_are_left_out(tmp_path: Path):
         ("A-WALL-FULL", Meaning("wall")),
         ("Außenwand_Beton", Meaning("wall", "concrete")),
         ("MURS PORTEURS", Meaning("wall")),
+        ("WALL-CHIPBOARD", Meaning("wall", "chipboard")),
+        ("Wall ceiling_board", Meaning("wall", "ceiling_board")),
         ("Tabiques yeso", Meaning("wall", "plasterboard")),
         ("I-GLAZ", Meaning("wall", "glass")),
         ("Türen", Meaning("door")),

@@ -1,0 +1,137 @@
+"""``rssnav plan import``: a plan and a report, or one line and no file."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+
+import ezdxf
+import pytest
+from cli_plans import ESCAPE, done, fault, run
+
+import floorplans
+
+
+@pytest.fixture
+def drawing(tmp_path: Path) -> Path:
+    """A hall of 12 m x 8 m in millimetres, of lines on the layer WALLS, with a table in it."""
+    doc = ezdxf.new()
+    doc.header["$INSUNITS"] = 4
+    space = doc.modelspace()
+    for layer, (x0, y0, x1, y1) in {
+        "WALLS": (0, 0, 12000, 8000), "table": (3000, 3000, 4000, 4000)
+    }.items():  # fmt: skip
+        corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
+    path = tmp_path / "hall.dxf"
+    doc.saveas(path)
+    return path
+
+
+def test_a_plan_is_written_and_told(drawing: Path, tmp_path: Path):
+    output = tmp_path / "hall.toml"
+    text = done("plan", "import", drawing, "-o", output)
+    assert floorplans.load(output).bounds == (0, 0, 12, 8)
+    rows = [line.split() for line in text.splitlines()]
+    assert ["WALLS", "1", "walls"] in rows
+    assert any(row[:4] == ["table", "1", "left", "out"] for row in rows)
+    assert any(row[:2] == ["height_m", "3"] for row in rows)
+    assert text.endswith(f"wrote {output}; see it with: rssnav plan show {output}\n")
+    assert not ESCAPE.search(text)
+
+
+def test_the_imported_plan_passes_the_check(drawing: Path, tmp_path: Path):
+    output = tmp_path / "hall.toml"
+    done("plan", "import", drawing, "-o", output)
+    assert "in order" in done("plan", "check", output)
+
+
+def test_options_go_into_the_plan(drawing: Path, tmp_path: Path):
+    output = tmp_path / "hall.toml"
+    done(
+        "plan", "import", drawing, "-o", output, "--name", "Hall 3", "--height", 4.5,
+        "--wall-thickness", 0.25, "--wall-material", "wood", "--floor-material", "metal",
+        "--ceiling-material", "glass", "--source", "2,3,1", "--start", "10.5,6.5",
+        "--layer", "t*=wall:brick", "--unit", "mm",
+    )  # fmt: skip
+    plan = floorplans.load(output)
+    assert (plan.name, plan.height_m, plan.source, plan.start) == (
+        "Hall 3", 4.5, (2, 3, 1), (10.5, 6.5)
+    )  # fmt: skip
+    assert (plan.floor_material, plan.ceiling_material) == ("metal", "glass")
+    assert {(w.material, w.thickness_m) for w in plan.walls} >= {("wood", 0.25)}
+    assert "brick" in {wall.material for wall in plan.walls}
+    assert "assumed" not in output.read_text().replace("# assumed: wall", "")
+
+
+def test_json_tells_everything(drawing: Path, tmp_path: Path):
+    told = json.loads(done("plan", "import", drawing, "-o", tmp_path / "h.toml", "--json"))
+    assert told["bounds_m"] == [0, 0, 12, 8]
+    assert {"name": "WALLS", "n_objects": 1, "became": "walls"} in told["layers"]
+    assert "height_m" in {assumption["key"] for assumption in told["assumed"]}
+    assert told["origin"] == {"x": 0, "y": 0, "frame": "the file, in metres"}
+
+
+def test_a_file_that_is_there_is_replaced_only_by_force(drawing: Path, tmp_path: Path):
+    output = tmp_path / "hall.toml"
+    output.write_text("mine")
+    assert "--force replaces it" in fault("plan", "import", drawing, "-o", output)
+    assert output.read_text() == "mine"
+    done("plan", "import", drawing, "-o", output, "--force")
+    assert output.read_text() != "mine"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("plan.dxf", b"\x89PNG\r\n\x1a\n", "does not begin like a DXF drawing"),
+        ("plan.dxf", b"", "the file is empty"),
+        ("plan.dxf", b"  0\nSECTION\n  2\nnonsense", "plan.dxf: "),
+        ("plan.dwg", b"AC1032", "known are .dxf"),
+        ("plan.geojson", b"  0\nSECTION", "does not begin like a GeoJSON"),
+    ],
+)
+def test_bad_files_end_with_one_line_and_nothing_written(
+    name: str, content: bytes, said: str, tmp_path: Path
+):
+    path, output = tmp_path / name, tmp_path / "out" / "plan.toml"
+    path.write_bytes(content)
+    line = fault("plan", "import", path, "-o", output)
+    assert str(path) in line
+    assert said in line
+    assert not output.parent.exists()
+
+
+def test_a_wrong_unit_is_told_with_the_right_one(drawing: Path, tmp_path: Path):
+    line = fault("plan", "import", drawing, "-o", tmp_path / "x.toml", "--unit", "m")
+    assert "12 km x 8 km" in line
+    assert "--unit mm for 12 m x 8 m" in line
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        ("--source", "1,2"),
+        ("--start", "a,b"),
+        ("--layer", "walls"),
+        ("--height", "tall"),
+        ("-o", "plan.dxf"),
+    ],
+)
+def test_wrong_usage_ends_with_2(wrong: tuple[str, str], drawing: Path, tmp_path: Path):
+    arguments = ["plan", "import", str(drawing), "-o", str(tmp_path / "x.toml"), *wrong]
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert not (tmp_path / "x.toml").exists()
+
+
+def test_help_has_examples_that_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    text = ESCAPE.sub("", done("plan", "import", "--help"))
+    commands = [
+        line.strip() for line in text.splitlines() if line.strip().startswith("rssnav plan")
+    ]
+    assert len(commands) == 3
+    for command in commands:
+        done(*shlex.split(command)[1:])
