@@ -179,23 +179,29 @@ def table_coordinates(direction: ArrayLike) -> tuple[Floats, Floats]:
     return row, turn * (0.25 * AZIMUTH_STEPS)
 
 
+def is_upright(antenna: Antenna) -> bool:
+    """Whether an antenna is the same all around, polarised upright and real."""
+    sine = np.linspace(-1.0, 1.0, 33)
+    around = np.linspace(0.0, 2.0 * np.pi, 13)
+    upright, level = antenna.amplitudes(*np.meshgrid(sine, around, indexing="ij"))
+    real = not np.iscomplexobj(upright) and not np.any(level)
+    return bool(real and np.allclose(upright, upright[:, :1]))
+
+
 def upright_amplitude(antenna: Antenna, sine: Floats) -> Floats:
-    """Amplitude along tau of an antenna that is the same all around and has no other part.
+    """Amplitude along tau of an antenna for which `is_upright` holds.
 
     Raises
     ------
     SceneError
         For an antenna that is not of that kind.
     """
-    around = np.linspace(0.0, 2.0 * np.pi, 13)
-    upright, level = antenna.amplitudes(*np.meshgrid(sine, around, indexing="ij"))
-    first = upright[:, 0]
-    if np.any(level) or np.iscomplexobj(upright) or not np.allclose(upright, first[:, None]):
+    if not is_upright(antenna):
         raise SceneError(
             f"antenna {antenna.describe()!r}: expected one that is the same all around and "
             "polarised upright"
         )
-    return np.asarray(first, dtype=np.float64)
+    return np.asarray(antenna.amplitudes(sine, np.zeros_like(sine)).upright, dtype=np.float64)
 
 
 def look_up(tables: tuple[Complexes, Complexes], direction: ArrayLike) -> Amplitudes:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from raytrace.errors import SceneError
 from raytrace.junctions import NEAR_M
@@ -61,9 +62,23 @@ def cut_into_cells(sheets: Sheets) -> CellComplex:
     panel_of = {_undirected(index[a], index[b]): panel for (a, b), panel in walls.items()}
     rings = _merge_convex(rings, vertices, panel_of)
     outlines = [_outline(ring, vertices, panel_of) for ring in rings]
-    view = _plan_view(outlines, vertices, sheets.planes)
+    vertices = _unsnapped(vertices, sheets)
+    view = _plan_view(rings, outlines, vertices, sheets.planes)
     segments = tuple((a, b, panel.profile) for (a, b), panel in panel_of.items())
     return CellComplex(view, vertices, segments)
+
+
+def _unsnapped(vertices: Floats, sheets: Sheets) -> Floats:
+    """Put vertices back from the grid to where they were drawn, or onto the walls they are on."""
+    drawn = np.array([end for p in sheets.panels for end in (p.start, p.end)])
+    off, nearest = KDTree(drawn).query(vertices)
+    exact = np.where((off < 1e-11)[:, None], drawn[nearest], vertices)
+    for k in np.flatnonzero(off >= 1e-11):
+        away = sheets.planes[:, 2] - sheets.planes[:, :2] @ vertices[k]
+        on = np.abs(away) < 1e-11
+        if on.any():
+            exact[k] += np.linalg.lstsq(sheets.planes[on, :2], away[on])[0]
+    return exact
 
 
 def _faces(segments: list[Segment], sheets: Sheets) -> list[shapely.Polygon]:
@@ -167,7 +182,10 @@ def _outline(
 
 
 def _plan_view(
-    outlines: list[list[tuple[int, Panel | None]]], vertices: Floats, planes: Floats
+    rings: list[list[int]],
+    outlines: list[list[tuple[int, Panel | None]]],
+    vertices: Floats,
+    planes: Floats,
 ) -> PlanView:
     """Arrays of the cells' edges, cell after cell, counter-clockwise."""
     corners = [[v for v, _ in outline] for outline in outlines]
@@ -180,20 +198,46 @@ def _plan_view(
     _refuse_open(passable & (twin < 0), vertices[ends])
     profiles = list(dict.fromkeys(p.profile for p in panels if p is not None))
     plane, line = _lines(panels, vertices[ends], planes)
+    kind = np.array([_kind(p) for p in panels], dtype=np.int64)
+    behind = _behind(rings, corners, kind)
     return PlanView(
         cell_edges=_offsets(corners),
         ends=vertices[ends].reshape(-1, 4),
         vertex=ends,
         plane=plane,
         line=line,
-        kind=np.array([_kind(p) for p in panels], dtype=np.int64),
+        kind=kind,
         profile=np.array([profiles.index(p.profile) if p else -1 for p in panels], dtype=np.int64),
         twin=twin,
         beyond=np.where(passable, cell[twin], -1),
+        behind_first=_offsets(behind),
+        behind=np.array([f for edges in behind for f in edges], dtype=np.int64),
+        cell_of=cell,
         profile_bins=_offsets([p.tops for p in profiles]),
         bin_top=np.array([t for p in profiles for t in p.tops]),
         bin_material=np.array([m for p in profiles for m in p.materials], dtype=np.int64),
     )
+
+
+def _behind(
+    rings: list[list[int]], corners: list[list[int]], kind: NDArray[np.int64]
+) -> list[list[int]]:
+    """For each edge that is a full wall, the edges of other cells at its back."""
+    owner: dict[tuple[int, int], int] = {}
+    first = 0
+    for ring, kept in zip(rings, corners, strict=True):
+        start = ring.index(kept[0])
+        number = first - 1
+        for a, b in _edges(ring[start:] + ring[:start]):
+            number += a in kept
+            owner[a, b] = number
+        first += len(kept)
+    behind: list[list[int]] = [[] for _ in kind]
+    for (a, b), edge in owner.items():
+        back = owner.get((b, a), -1)
+        if kind[edge] == WALL and back >= 0 and back not in behind[edge]:
+            behind[edge].append(back)
+    return behind
 
 
 def _offsets(groups: Sequence[Sequence[object]]) -> Ints:

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.edges import LevelEdge, UprightEdge
-from raytrace.kernels.beams import ORDER, Tree, grow_tree, hit_points
+from raytrace.kernels.beams import ORDER, Hits, Tree, grow_tree, hit_points
 from raytrace.kernels.level_edges import Rim, RimLegsIn, new_work, sum_level_edge
 from raytrace.kernels.path_points import level_points, reflection_points, upright_points
+from raytrace.kernels.plan_view import TIE_M
 from raytrace.kernels.reflections import sum_reflections
 from raytrace.kernels.strips import StripTree, edge_frame, grow_strips, hit_from_strip
 from raytrace.kernels.tracing import Record, Sums
@@ -48,8 +49,9 @@ class Reflections:
         self._tracing = tracing
 
     @cached_property
-    def _hits(self) -> NDArray[np.int32]:
-        return hit_points(self._tracing.tree, self._tracing.targets)
+    def _hits(self) -> Hits:
+        t = self._tracing
+        return hit_points(t.trace.plan, t.tree, t.targets)
 
     def add_to(self, sums: Sums, record: Record) -> None:
         """See `Family`."""
@@ -75,23 +77,31 @@ class OverUprightEdge:
         self._cells = edge.cells
         self._vertex = edge.vertex
         self._edge = Edge(
-            edge.x, edge.y, edge.z_low, edge.z_high, edge.o_face_azimuth,
+            edge.x, edge.y, *self._heights(edge), edge.o_face_azimuth,
             new_wedge(edge.wedge_n, edge.o_material, edge.n_material),
         )  # fmt: skip
+
+    def _heights(self, edge: UprightEdge) -> tuple[float, float]:
+        """Heights between which a path may cross; floor and ceiling are no ends of an edge."""
+        low = edge.z_low if edge.z_low > TIE_M else -1.0
+        height = self._tracing.scene.height_m
+        return low, edge.z_high if edge.z_high < height - TIE_M else height + 1.0
 
     @cached_property
     def _legs_in(self) -> LegsIn:
         tree, corners = self._tracing.tree, self._tracing.corners
-        beams = corners[corners[:, 0] == self._vertex, 1]
-        beams = beams[np.argsort(tree.link[beams, ORDER], kind="stable")]
-        return legs_to_edge(self._tracing.trace, tree, beams, self._edge)
+        mine = np.flatnonzero(corners.pair[:, 0] == self._vertex)
+        mine = mine[np.argsort(tree.link[corners.pair[mine, 1], ORDER], kind="stable")]
+        beams, share = corners.pair[mine, 1], corners.share[mine]
+        return legs_to_edge(self._tracing.trace, tree, beams, share, self._edge)
 
     @cached_property
-    def _lit(self) -> tuple[Tree, NDArray[np.int32]]:
+    def _lit(self) -> tuple[Tree, Hits]:
         t = self._tracing
         budget = t.config.max_reflections - int(self._legs_in.order[0])
-        tree = grow_tree(t.trace.plan, t.bounces, self._edge.x, self._edge.y, self._cells, budget)
-        return tree, hit_points(tree, t.targets)
+        most, view = (budget, t.config.max_transmissions), t.trace.plan
+        tree = grow_tree(view, t.bounces, self._edge.x, self._edge.y, self._cells, most)
+        return tree, hit_points(view, tree, t.targets)
 
     def add_to(self, sums: Sums, record: Record) -> None:
         """See `Family`."""
@@ -144,12 +154,14 @@ class OverLevelEdge:
         )
 
     @cached_property
-    def _lit(self) -> tuple[StripTree, tuple[NDArray[np.int32], Floats]]:
+    def _lit(self) -> tuple[StripTree, tuple[Hits, Floats]]:
         t = self._tracing
         view = t.trace.plan
         cell = int(np.searchsorted(view.cell_edges, self._near, side="right")) - 1
         budget = t.config.max_reflections - int(self._legs_in.order[0])
-        strips = grow_strips(view, t.bounces, self._near, cell, budget)
+        strips = grow_strips(
+            view, t.bounces, self._near, cell, (budget, t.config.max_transmissions)
+        )
         return strips, hit_from_strip(strips, t.targets)
 
     def add_to(self, sums: Sums, record: Record) -> None:
@@ -169,8 +181,8 @@ class OverLevelEdge:
         level_points(self._tracing.trace, self._rim, source, strips, lit, record, points, kinds)
 
 
-def _receivers(hits: NDArray[np.int32], record: Record) -> NDArray[np.int64]:
-    return hits[record.key[: record.used[0], 0], 0].astype(np.int64)
+def _receivers(hits: Hits, record: Record) -> NDArray[np.int64]:
+    return hits.pair[record.key[: record.used[0], 0], 0].astype(np.int64)
 
 
 def all_families(tracing: Tracing) -> list[Family]:

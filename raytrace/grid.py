@@ -79,10 +79,14 @@ class TraceConfig:
         diffraction (there on both sides of the edge together).
     max_diffractions
         0 or 1.
+    max_transmissions
+        Most walls that a path goes through, straight on, with the slabs' transmission; doors and
+        windows that are filled are walls.
     """
 
     max_reflections: int = 6
     max_diffractions: int = 1
+    max_transmissions: int = 0
 
     def __post_init__(self) -> None:
         """Check the limits; raise ValueError where one cannot be."""
@@ -90,3 +94,5 @@ class TraceConfig:
             raise ValueError(f"max_reflections = {self.max_reflections}: expected 0 to 20")
         if self.max_diffractions not in (0, 1):
             raise ValueError(f"max_diffractions = {self.max_diffractions}: expected 0 or 1")
+        if not 0 <= self.max_transmissions <= 20:
+            raise ValueError(f"max_transmissions = {self.max_transmissions}: expected 0 to 20")

@@ -3,43 +3,87 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.kernels.beams import Targets
+from raytrace.kernels.beams import (
+    Targets,
+    edge_side,
+    enlarged,
+    most_corners,
+    share_within,
+)
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.plan_view import Floats, Ints, PlanView, cross
-
-ON_EDGE_M2 = 1e-9
-"""A point is in a cell if it lies no further than this outside, as a cross product [m2]."""
+from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView, material_at
 
 
 @jit()
-def cells_of(view: PlanView, xy: Floats) -> Ints:
-    """Cell of each point (n, 2), -1 outside the building; the first one for a point on an edge."""
-    cells = np.full(len(xy), -1, np.int64)
+def cells_around(view: PlanView, xy: Floats) -> tuple[Ints, Floats]:
+    """Cells that hold points or have them on their border.
+
+    Parameters
+    ----------
+    view
+        The plan view.
+    xy
+        (n, 2) [m].
+
+    Returns
+    -------
+    places
+        (m, 2) point and cell; a point outside the building is in none, one on a border in all
+        around it.
+    share
+        (m,) how much of the point's surroundings is in the cell.
+    """
+    places, share = np.empty((1024, 2), np.int64), np.empty((1024, 1))
+    ways = np.empty((most_corners(view), 2))
+    n = 0
     for k in range(len(xy)):
         for c in range(len(view.cell_edges) - 1):
-            inside = True
+            touched = 0
             for e in range(view.cell_edges[c], view.cell_edges[c + 1]):
-                x1, y1, x2, y2 = view.ends[e]
-                side = cross(x2 - x1, y2 - y1, xy[k, 0] - x1, xy[k, 1] - y1)
-                if side < -ON_EDGE_M2:
-                    inside = False
+                inside, nx, ny = edge_side(view, e, xy[k, 0], xy[k, 1])
+                if inside <= -TIE_M:
+                    touched = -1
                     break
-            if inside:
-                cells[k] = c
+                if inside < TIE_M:
+                    ways[touched, 0], ways[touched, 1] = nx, ny
+                    touched += 1
+            if touched < 0:
+                continue
+            if n == len(places):
+                places, share = enlarged(places), enlarged(share)
+            places[n, 0], places[n, 1] = k, c
+            share[n, 0] = share_within(ways, touched)
+            n += 1
+            if touched == 0:
                 break
-    return cells
+    return places[:n].copy(), share[:n, 0].copy()
+
+
+@jit()
+def wall_around(view: PlanView, cells: Ints, place: tuple[float, float, float]) -> int:
+    """Edge of one of the cells around a place whose wall the place lies in; -1 for none."""
+    x, y, z = place
+    for cell in cells:
+        for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
+            inside, _, _ = edge_side(view, e, x, y)
+            on_wall = view.profile[e] >= 0 and inside < TIE_M
+            if on_wall and material_at(view, view.profile[e], z) >= 0:
+                return e
+    return -1
 
 
 def targets_in(view: PlanView, xy: Floats, wanted: NDArray[np.bool_]) -> Targets:
     """Sort points by cell; those outside the building or not wanted are left out."""
-    cells = np.where(wanted, cells_of(view, xy), -1)
-    order = np.argsort(cells, kind="stable")
-    order = order[cells[order] >= 0]
-    per_cell = np.bincount(cells[order], minlength=len(view.cell_edges) - 1)
-    return Targets(np.concatenate([[0], np.cumsum(per_cell)]), order, xy)
+    places, share = cells_around(view, xy)
+    kept = np.flatnonzero(wanted[places[:, 0]] & (share > 0.0))
+    kept = kept[np.argsort(places[kept, 1], kind="stable")]
+    per_cell = np.bincount(places[kept, 1], minlength=len(view.cell_edges) - 1)
+    return Targets(np.concatenate([[0], np.cumsum(per_cell)]), places[kept, 0], share[kept], xy)
 
 
-def bounces_needed(view: PlanView, z_low: float, z_high: float) -> Ints:
+def bounces_needed(
+    view: PlanView, z_low: float, z_high: float, through_walls: bool = False
+) -> Ints:
     """Floor or ceiling reflections that a path between two heights needs at each edge.
 
     Parameters
@@ -48,6 +92,8 @@ def bounces_needed(view: PlanView, z_low: float, z_high: float) -> Ints:
         The plan view.
     z_low, z_high
         Lowest and highest of the heights at which paths begin, end and are diffracted [m].
+    through_walls
+        Whether paths may pass where there is no opening.
 
     Returns
     -------
@@ -67,6 +113,7 @@ def bounces_needed(view: PlanView, z_low: float, z_high: float) -> Ints:
             bottom = view.bin_top[k]
     needed = np.zeros((len(view.profile), 2), np.int64)
     on_wall = view.profile >= 0
-    needed[on_wall, 0] = ~open_between[view.profile[on_wall]]
+    if not through_walls:
+        needed[on_wall, 0] = ~open_between[view.profile[on_wall]]
     needed[on_wall, 1] = ~wall_between[view.profile[on_wall]]
     return needed

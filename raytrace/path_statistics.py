@@ -63,22 +63,22 @@ class PathStatistics:
         sums = _Sums(paths, n_receivers)
         power = sums.of(sums.power)
         strongest = np.zeros(n_receivers)
-        np.maximum.at(strongest, paths.receiver, sums.power)
+        np.maximum.at(strongest, paths.receiver, np.abs(paths.gain) ** 2)
         mean_s = sums.mean(paths.delay_s)
         variance = sums.mean((paths.delay_s - mean_s[paths.receiver]) ** 2)
         azimuth = paths.arrival[:, 0]
         east, north = sums.mean(np.cos(azimuth)), sums.mean(np.sin(azimuth))
         spread = np.sqrt(np.maximum(1.0 - east**2 - north**2, 0.0))
-        field = sums.of(paths.gain.real) + 1j * sums.of(paths.gain.imag)
+        field = sums.of(paths.share * paths.gain.real) + 1j * sums.of(paths.share * paths.gain.imag)
         return cls(
-            path_count=np.bincount(paths.receiver, minlength=n_receivers).astype(np.int64),
+            path_count=np.floor(sums.of(paths.share) + 0.5).astype(np.int64),
             rss_dbm=power_dbm + _decibels(power),
             rss_coherent_dbm=power_dbm + _decibels(np.abs(field) ** 2),
             strongest_path_dbm=power_dbm + _decibels(strongest),
             mean_delay_s=mean_s,
             delay_spread_s=np.sqrt(variance),
             angular_spread=np.where(power > 0.0, spread, 0.0),
-            k_factor_db=_k_factor_db(paths, sums.power, n_receivers),
+            k_factor_db=_k_factor_db(strongest, power, sums.of(paths.share)),
         )
 
 
@@ -86,7 +86,7 @@ class _Sums:
     """Sums over each receiver's paths, plain and weighted with power."""
 
     def __init__(self, paths: Paths, n_receivers: int) -> None:
-        self.power = np.abs(paths.gain) ** 2
+        self.power = paths.share * np.abs(paths.gain) ** 2
         self._receiver = paths.receiver
         self._n = n_receivers
         self._total = self.of(self.power)
@@ -103,13 +103,12 @@ class _Sums:
         return self.of(self.power * values) / total
 
 
-def _k_factor_db(paths: Paths, power: Floats, n_receivers: int) -> Floats:
+def _k_factor_db(strongest: Floats, power: Floats, count: Floats) -> Floats:
     """Strongest over the rest; -inf where there is nothing, inf where there is one path only."""
-    k_db = np.full(n_receivers, -np.inf)
-    for receiver in np.unique(paths.receiver[power > 0.0]):
-        of_receiver = np.sort(power[paths.receiver == receiver])
-        rest = of_receiver[:-1].sum()
-        k_db[receiver] = 10.0 * np.log10(of_receiver[-1] / rest) if rest > 0.0 else np.inf
+    rest = np.where(count > 1.0, np.maximum(power - strongest, 0.0), 0.0)
+    k_db = np.where(strongest > 0.0, np.inf, -np.inf)
+    some = (strongest > 0.0) & (rest > 0.0)
+    k_db[some] = 10.0 * np.log10(strongest[some] / rest[some])
     return k_db
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from raytrace.constants import SPEED_OF_LIGHT
 from raytrace.extras import needs_extra
-from raytrace.kernels.path_points import DIFFRACTION, NOTHING, REFLECTION
+from raytrace.kernels.path_points import DIFFRACTION, NOTHING, REFLECTION, TRANSMISSION
 
 if TYPE_CHECKING:
     import pandas as pd
 
-INTERACTION_NAMES = {NOTHING: "", REFLECTION: "R", DIFFRACTION: "D"}
+INTERACTION_NAMES = {NOTHING: "", REFLECTION: "R", DIFFRACTION: "D", TRANSMISSION: "T"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +27,8 @@ class Paths:
     receiver
         (n,) int64 which receiver each path reaches.
     interactions
-        (n, most) int8 what happens on the way: 1 reflection, 2 diffraction, 0 no more.
+        (n, most) int8 what happens on the way: 1 reflection, 2 diffraction,
+        3 transmission, 0 no more.
     vertices
         (n, most + 2, 3) [m] transmitter, points of interaction, receiver; the receiver is
         repeated to the end.
@@ -36,6 +37,9 @@ class Paths:
     gain
         (n,) complex path gain with both antennas: its squared magnitude is received over
         transmitted power, and the gains of a receiver's paths add up to its coherent field.
+    share
+        (n,) 1, or less for a path that goes through a corner or rim and so exists on one side of
+        the receiver only: it counts that much in sums (docs/conventions.md, "Ties").
     """
 
     receiver: NDArray[np.int64]
@@ -43,6 +47,7 @@ class Paths:
     vertices: NDArray[np.float64]
     length_m: NDArray[np.float64]
     gain: NDArray[np.complex128]
+    share: NDArray[np.float64]
 
     def __len__(self) -> int:
         """Number of paths."""
@@ -87,9 +92,9 @@ class Paths:
         -------
         pandas.DataFrame
             Columns ``receiver``, ``sequence`` (as `sequence` writes it), ``n_reflections``,
-            ``n_diffractions``, ``length_m``, ``delay_s``, ``gain_real``, ``gain_imag``,
-            ``gain_db``, and the azimuth and zenith angles [rad] ``departure_azimuth``,
-            ``departure_zenith``, ``arrival_azimuth``, ``arrival_zenith``.
+            ``n_diffractions``, ``n_transmissions``, ``length_m``, ``delay_s``, ``share``,
+            ``gain_real``, ``gain_imag``, ``gain_db``, and the azimuth and zenith angles [rad]
+            ``departure_azimuth``, ``departure_zenith``, ``arrival_azimuth``, ``arrival_zenith``.
         """
         with needs_extra("data"):
             import pandas as pd
@@ -100,8 +105,10 @@ class Paths:
                 "sequence": [self.sequence(k) for k in range(len(self))],
                 "n_reflections": np.count_nonzero(self.interactions == REFLECTION, axis=1),
                 "n_diffractions": np.count_nonzero(self.interactions == DIFFRACTION, axis=1),
+                "n_transmissions": np.count_nonzero(self.interactions == TRANSMISSION, axis=1),
                 "length_m": self.length_m,
                 "delay_s": self.delay_s,
+                "share": self.share,
                 "gain_real": self.gain.real,
                 "gain_imag": self.gain.imag,
                 "gain_db": self.gain_db,
@@ -151,12 +158,29 @@ class Paths:
         channel = np.zeros((most, taps), dtype=np.complex128)
         shift = bandwidth_hz * (self.delay_s - start_s)
         for n in range(taps):
-            np.add.at(channel[:, n], self.receiver, self.gain * np.sinc(n - shift))
+            np.add.at(channel[:, n], self.receiver, self.share * self.gain * np.sinc(n - shift))
         return ImpulseResponse(channel, start_s + np.arange(taps) / bandwidth_hz)
 
     def at(self, receiver: int) -> Paths:
         """Return the paths of one receiver."""
         return self.rows(np.flatnonzero(self.receiver == receiver))
+
+    def with_halves_joined(self) -> Paths:
+        """Return the same paths, those that two beams found half each at a tie made one."""
+        half = np.flatnonzero(self.share < 1.0)
+        if not len(half):
+            return self
+        where = np.round(self.vertices[half].reshape(len(half), -1), 6)
+        key = np.column_stack([self.receiver[half], self.interactions[half], where])
+        _, first, group = np.unique(key, axis=0, return_index=True, return_inverse=True)
+        gain = self.gain[half][first][group]
+        alike = np.abs(self.gain[half] - gain) <= 1e-9 * np.abs(gain)
+        share = self.share.copy()
+        share[half[first]] = np.bincount(group, self.share[half] * alike, len(first))
+        kept = np.ones(len(self), bool)
+        kept[half] = ~alike
+        kept[half[first]] = True
+        return replace(self, share=share).rows(np.flatnonzero(kept))
 
     def strongest_first(self) -> Paths:
         """Return the same paths, receiver by receiver, strongest first."""
@@ -170,6 +194,7 @@ class Paths:
             self.vertices[rows],
             self.length_m[rows],
             self.gain[rows],
+            self.share[rows],
         )
 
 

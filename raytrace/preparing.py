@@ -8,20 +8,16 @@ from numpy.typing import NDArray
 from raytrace.antennas import Antenna
 from raytrace.errors import SceneError
 from raytrace.grid import TraceConfig
-from raytrace.kernels.beams import Targets, Tree, grow_tree, hit_corners, hit_partial_walls
+from raytrace.kernels.beams import Hits, Targets, Tree, grow_tree, hit_corners, hit_partial_walls
+from raytrace.kernels.plan_view import TIE_M
 from raytrace.kernels.tracing import Trace
 from raytrace.kernels.unfolding import image_heights
-from raytrace.locating import bounces_needed, cells_of, targets_in
+from raytrace.locating import bounces_needed, cells_around, targets_in, wall_around
 from raytrace.scene import Scene
 from raytrace.tables import make_radio
 from raytrace.transmitter import Transmitter
 
 Floats = NDArray[np.float64]
-
-TIE_OFFSET_M = (1.234e-5, 0.789e-5)
-"""Where the transmitter is taken to stand, from its place [m]. On plans drawn on a lattice many
-rays would run exactly through corners; so far off, none does, and every path is on one side of
-every edge. The coherent field does not feel it (docs/conventions.md, "Ties")."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +37,7 @@ class Tracing:
     tree
         Beams from the source.
     corners
-        (n, 2) corners of the plan view that beams of the source light.
+        Corners of the plan view that beams of the source light.
     rims, stretches
         (n, 2), (n, 2) partial walls that beams of the source light, and which part of them.
     """
@@ -52,7 +48,7 @@ class Tracing:
     targets: Targets
     bounces: NDArray[np.int64]
     tree: Tree
-    corners: NDArray[np.int32]
+    corners: Hits
     rims: NDArray[np.int32]
     stretches: Floats
 
@@ -76,20 +72,16 @@ def prepare(
         The receivers' antenna; a half-wave dipole of 0 dB peak gain by default.
     """
     view = scene.view
-    x, y = source.position[0] + TIE_OFFSET_M[0], source.position[1] + TIE_OFFSET_M[1]
-    z = source.position[2]
-    root = cells_of(view, np.array([[x, y]]))
-    if root[0] < 0 or not 0.0 < z < scene.height_m:
-        raise SceneError(
-            f"the transmitter at {source.position} is not inside the building: "
-            f"expected a place on its floor and a height between 0 and {scene.height_m:g} m"
-        )
+    x, y, z = source.position
+    root = _cells_of_source(scene, source)
+    most = (config.max_reflections, config.max_transmissions)
     heights, level = np.unique(receivers[:, 2], return_inverse=True)
     trace = Trace(
         plan=view,
         radio=make_radio(
             source, scene.slabs, height_m=scene.height_m, floor=scene.floor_material,
             ceiling=scene.ceiling_material, receive_antenna=receive_antenna,
+            through_walls=config.max_transmissions > 0,
         ),
         source=np.array([x, y, z]),
         source_z=image_heights(z, scene.height_m, config.max_reflections)[0],
@@ -100,13 +92,34 @@ def prepare(
         ).reshape(len(heights), 2 * config.max_reflections + 1),
         image_bounces=image_heights(0.0, 1.0, config.max_reflections)[1],
         max_order=config.max_reflections,
+        max_walls=config.max_transmissions,
     )  # fmt: skip
     band = [z, *heights, *(e.z for e in scene.level_edges)]
-    bounces = bounces_needed(view, min(band), max(band))
-    tree = grow_tree(view, bounces, x, y, root, config.max_reflections)
+    bounces = bounces_needed(view, min(band), max(band), config.max_transmissions > 0)
+    tree = grow_tree(view, bounces, x, y, root, most)
     rims, stretches = hit_partial_walls(view, tree)
     inside = (receivers[:, 2] > 0.0) & (receivers[:, 2] < scene.height_m)
     return Tracing(
         scene, config, trace, targets_in(view, trace.receivers, inside), bounces, tree,
         hit_corners(view, tree), rims, stretches,
     )  # fmt: skip
+
+
+def _cells_of_source(scene: Scene, source: Transmitter) -> NDArray[np.int64]:
+    """Cells around the transmitter; it may stand in a doorway, but not in a wall."""
+    x, y, z = source.position
+    view = scene.view
+    places, _ = cells_around(view, np.array([[x, y]]))
+    if not len(places) or not 0.0 < z < scene.height_m:
+        raise SceneError(
+            f"the transmitter at {source.position} is not inside the building: "
+            f"expected a place on its floor and a height between 0 and {scene.height_m:g} m"
+        )
+    e = wall_around(view, places[:, 1], source.position)
+    if e >= 0:
+        x1, y1, x2, y2 = view.ends[e]
+        raise SceneError(
+            f"the transmitter at {source.position} stands in the wall from ({x1:g}, {y1:g}) to "
+            f"({x2:g}, {y2:g}): move it away by more than {TIE_M:g} m"
+        )
+    return places[:, 1]

@@ -5,8 +5,10 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 
+import numpy as np
+
 from raytrace.families import Family, all_families
-from raytrace.kernels.tracing import Sums, new_record, new_sums
+from raytrace.kernels.tracing import STRONGEST, Sums, new_record, new_sums
 from raytrace.preparing import Tracing
 
 Progress = Callable[[int, int], None]
@@ -35,9 +37,10 @@ def sum_paths(
     families = all_families(tracing)
     total = new_sums(len(tracing.trace.receivers), tracing.config.max_reflections)
     for done, part in enumerate(_in_order(tracing, families, threads or default_threads()), 1):
-        total.field[:] += part.field
-        total.power[:] += part.power
-        total.n_paths[:] += part.n_paths
+        strongest = np.maximum(total.moments[:, STRONGEST], part.moments[:, STRONGEST])
+        for whole, addend in zip(total, part, strict=True):
+            whole += addend
+        total.moments[:, STRONGEST] = strongest
         if progress is not None:
             progress(done, len(families))
     return total

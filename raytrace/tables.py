@@ -1,15 +1,22 @@
 """The tables that the field kernels look up."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fresnel
 
-from raytrace.antennas import Antenna, HalfWaveDipole, upright_amplitude
+from raytrace.antennas import (
+    Antenna,
+    HalfWaveDipole,
+    antenna_tables,
+    is_upright,
+    upright_amplitude,
+)
 from raytrace.kernels.field import Radio
 from raytrace.kernels.utd import TRANSITION_MAX, TRANSITION_STEPS
-from raytrace.materials import Slab, slab_tables
+from raytrace.materials import Slab, slab_tables, transmission_tables
 from raytrace.transmitter import Transmitter
 
 Floats = NDArray[np.float64]
@@ -26,6 +33,7 @@ def make_radio(
     floor: int,
     ceiling: int,
     receive_antenna: Antenna | None = None,
+    through_walls: bool = False,
 ) -> Radio:
     """Tabulate everything of a trace that is not geometry."""
     turn = np.arange(CIS_STEPS + 1) * (2.0 * np.pi / CIS_STEPS)
@@ -35,11 +43,27 @@ def make_radio(
         floor=floor,
         ceiling=ceiling,
         slabs=slab_tables(slabs, transmitter.frequency_hz),
+        through=transmission_tables(slabs, transmitter.frequency_hz)
+        if through_walls
+        else np.empty((0, 2, 4)),
         transition=transition_table(),
         cis=np.column_stack([np.cos(turn), np.sin(turn)]),
-        transmit=antenna_table(transmitter.antenna),
-        receive=antenna_table(receive_antenna or HalfWaveDipole()),
+        **_antennas(transmitter.antenna, receive_antenna or HalfWaveDipole()),
     )
+
+
+def _antennas(transmit: Antenna, receive: Antenna) -> dict[str, Any]:
+    """Tables of both antennas: over the elevation alone where that is all they depend on."""
+    if is_upright(transmit) and is_upright(receive):
+        none = np.empty((0, 2, 2, 2), np.complex128)
+        return {
+            "transmit": antenna_table(transmit),
+            "receive": antenna_table(receive),
+            "patterns": none,
+        }
+    patterns = np.stack([np.stack(antenna_tables(a), axis=-1) for a in (transmit, receive)])
+    unused = np.zeros(2)
+    return {"transmit": unused, "receive": unused, "patterns": patterns}
 
 
 def antenna_table(antenna: Antenna) -> Floats:

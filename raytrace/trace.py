@@ -3,6 +3,7 @@
 import platform
 import time
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +11,10 @@ from numpy.typing import NDArray
 from raytrace.antennas import Antenna
 from raytrace.families import Family, all_families
 from raytrace.grid import Grid, TraceConfig
-from raytrace.kernels.tracing import Sums, new_record, new_sums
+from raytrace.kernels.tracing import new_record, new_sums
+from raytrace.layers import layers_of
 from raytrace.paths import Paths
-from raytrace.preparing import TIE_OFFSET_M, Tracing, prepare
+from raytrace.preparing import Tracing, prepare
 from raytrace.radio_map import RadioMap
 from raytrace.scene import Scene
 from raytrace.summing import Progress, sum_paths
@@ -20,7 +22,7 @@ from raytrace.transmitter import Transmitter
 
 Floats = NDArray[np.float64]
 
-TRACER_VERSION = 1
+TRACER_VERSION = 2
 """Grows whenever the same scene would give another map."""
 
 
@@ -48,8 +50,7 @@ def trace_paths(
     Returns
     -------
     Paths
-        Receiver by receiver, strongest first. The transmitter's vertex is off its position by
-        `preparing.TIE_OFFSET_M`.
+        Receiver by receiver, strongest first.
 
     Raises
     ------
@@ -61,23 +62,29 @@ def trace_paths(
         raise ValueError(f"receivers of shape {receivers.shape}: expected finite numbers (n, 3)")
     tracing = prepare(scene, source, receivers, config or TraceConfig(), receive_antenna)
     found = [_write_out(tracing, family) for family in all_families(tracing)]
-    return Paths(
-        np.concatenate([p.receiver for p in found]),
-        np.concatenate([p.interactions for p in found]),
-        np.concatenate([p.vertices for p in found]),
-        np.concatenate([p.length_m for p in found]),
-        np.concatenate([p.gain for p in found]),
-    ).strongest_first()
+    return (
+        Paths(
+            np.concatenate([p.receiver for p in found]),
+            np.concatenate([p.interactions for p in found]),
+            np.concatenate([p.vertices for p in found]),
+            np.concatenate([p.length_m for p in found]),
+            np.concatenate([p.gain for p in found]),
+            np.concatenate([p.share for p in found]),
+        )
+        .with_halves_joined()
+        .strongest_first()
+    )
 
 
 def _write_out(tracing: Tracing, family: Family) -> Paths:
     """Every path of a family: counted first, then written."""
     config = tracing.config
     sums = new_sums(len(tracing.trace.receivers), config.max_reflections)
-    family.add_to(sums, new_record(0))
-    n = int(sums.n_paths.sum())
+    count = new_record(0)
+    family.add_to(sums, count)
+    n = int(count.used[0])
     record = new_record(n)
-    most = config.max_reflections + config.max_diffractions
+    most = config.max_reflections + config.max_diffractions + config.max_transmissions
     points = np.zeros((n, most + 2, 3))
     kinds = np.zeros((n, most), np.int8)
     if n:
@@ -85,7 +92,7 @@ def _write_out(tracing: Tracing, family: Family) -> Paths:
         family.write_points(record, points, kinds)
     length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
     receiver = family.receivers_of(record) if n else np.empty(0, np.int64)
-    return Paths(receiver, kinds, points, length, record.gain)
+    return Paths(receiver, kinds, points, length, record.gain, record.share)
 
 
 def compute_radio_map(
@@ -122,10 +129,11 @@ def compute_radio_map(
     config = config or TraceConfig()
     tracing = prepare(scene, source, grid.points(), config, receive_antenna)
     sums = sum_paths(tracing, threads, progress)
+    straight_m = np.linalg.norm(grid.points() - np.array(source.position), axis=1)
+    layers = layers_of(sums, straight_m, source.power_dbm)
+    on_grid: dict[str, Any] = {n: layer.reshape(grid.shape) for n, layer in layers.items()}
     return RadioMap(
-        rss_dbm=_dbm(sums.power, sums, source).reshape(grid.shape),
-        rss_coherent_dbm=_dbm(np.abs(sums.field) ** 2, sums, source).reshape(grid.shape),
-        path_count=sums.n_paths.sum(axis=1).reshape(grid.shape),
+        **on_grid,
         grid=grid,
         transmitter=source,
         config=config,
@@ -133,19 +141,10 @@ def compute_radio_map(
     )
 
 
-def _dbm(power: Floats, sums: Sums, source: Transmitter) -> Floats:
-    """Received power [dBm] of a power gain; -inf without a path."""
-    reached = sums.n_paths.any(axis=1) & (power > 0.0)
-    dbm = np.full(len(power), -np.inf)
-    dbm[reached] = source.power_dbm + 10.0 * np.log10(power[reached])
-    return dbm
-
-
 def _provenance(scene: Scene, wall_time_s: float) -> dict[str, str | float | int]:
     return {
         "tracer_version": TRACER_VERSION,
         "material_edition": scene.material_edition,
-        "tie_offset_m": f"{TIE_OFFSET_M[0]:g}, {TIE_OFFSET_M[1]:g}",
         "wall_time_s": wall_time_s,
         "python": platform.python_version(),
         **{name: version(name) for name in ("rssnav", "numpy", "numba", "scipy", "trimesh")},

@@ -14,12 +14,14 @@ from reference import DIFFRACTION, REFLECTION, Edge, Facets, Found
 from scipy.special import fresnel
 
 from raytrace import Antenna, Transmitter
-from raytrace.antennas import upright_amplitude
 from raytrace.materials import MATERIALS
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 UP = np.array([0.0, 0.0, 1.0])
+TRANSMISSION = 3
+CONDUCTOR = np.diag([-1.0, 1.0])
+"""Reflection dyad of a wedge's face that conducts perfectly."""
 
 
 class Slab(NamedTuple):
@@ -69,9 +71,9 @@ def wedge(
     angles: tuple[Floats, Floats],
     sin_beta: Floats,
     k_distance: Floats,
-    faces: tuple[tuple[Complexes, Complexes], tuple[Complexes, Complexes]],
-) -> tuple[Complexes, Complexes]:
-    """Soft and hard coefficients times sqrt(k): Kouyoumjian and Pathak, eqs. 25-33.
+    faces: tuple[Complexes, Complexes],
+) -> Complexes:
+    """Dyads (m, 2, 2) times sqrt(k), soft before hard: Kouyoumjian and Pathak, eqs. 25-33.
 
     Parameters
     ----------
@@ -84,8 +86,8 @@ def wedge(
     k_distance
         k L, L the distance parameter.
     faces
-        (soft, hard) reflection coefficients of the o-face and of the n-face, -1 and 1 for a
-        perfect conductor.
+        Reflection dyads (m, 2, 2) of the o-face and of the n-face, `CONDUCTOR` for a perfect
+        conductor.
     """
     phi_in, phi = angles
     terms = []
@@ -95,12 +97,9 @@ def wedge(
             a = 2.0 * np.cos(n * np.pi * turns - 0.5 * beta) ** 2
             cotangent = 1.0 / np.tan((np.pi + sign * beta) / (2.0 * n))
             terms.append(cotangent * transition(k_distance * a))
-    direct = terms[0] + terms[1]
+    direct, at_n, at_o = (t[:, None, None] for t in (terms[0] + terms[1], terms[2], terms[3]))
     size = -np.exp(-0.25j * np.pi) / (2.0 * n * np.sqrt(2.0 * np.pi) * sin_beta)
-    (soft_o, hard_o), (soft_n, hard_n) = faces
-    soft = size * (direct + soft_n * terms[2] + soft_o * terms[3])
-    hard = size * (direct + hard_n * terms[2] + hard_o * terms[3])
-    return soft, hard
+    return size[:, None, None] * (direct * np.eye(2) + faces[1] * at_n + faces[0] * at_o)
 
 
 def unit(vectors: Floats) -> Floats:
@@ -134,12 +133,13 @@ def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
     rays = np.diff(found.vertices, axis=1)
     lengths = np.linalg.norm(rays, axis=2)
     first = unit(rays[:, 0])
-    field = upright_amplitude(radio.source.antenna, first[:, 2])[:, None] * polarisation(first)
-    field = field.astype(np.complex128)
+    field = pattern(radio.source.antenna, first)
     spread = 1.0 / lengths.sum(axis=1)
     for k in range(most):
         rows = np.flatnonzero(found.kinds[:, k] == REFLECTION)
         field[rows] = reflected(facets, radio, found.vertices[rows, k : k + 3], field[rows])
+        rows = np.flatnonzero(found.kinds[:, k] == TRANSMISSION)
+        field[rows] = transmitted(facets, radio, found.vertices[rows, k : k + 2], field[rows])
         rows = np.flatnonzero(found.kinds[:, k] == DIFFRACTION)
         before = lengths[rows, : k + 1].sum(axis=1)
         behind = lengths[rows, k + 1 :].sum(axis=1)
@@ -148,8 +148,7 @@ def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
         field[rows] = diffracted(facets, radio, where, (before, behind), field[rows])
     last = np.count_nonzero(found.kinds, axis=1)
     arriving = unit(rays[np.arange(n), last])
-    taken_up = upright_amplitude(radio.receive, -arriving[:, 2])
-    received = dot(field, polarisation(arriving)) * taken_up
+    received = dot(field, pattern(radio.receive, -arriving))
     wavelength = radio.source.wavelength_m
     phase = np.exp(-2j * np.pi / wavelength * lengths.sum(axis=1))
     return wavelength / (4.0 * np.pi) * spread * phase * received
@@ -158,6 +157,33 @@ def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
 def polarisation(directions: Floats) -> Floats:
     """Unit vectors (n, 3) across rays, as upright as they can be."""
     return unit(UP - directions[:, 2, None] * directions)
+
+
+def pattern(antenna: Antenna, directions: Floats) -> Complexes:
+    """Field (n, 3) that an antenna sends towards directions (n, 3)."""
+    upright = polarisation(directions)
+    level = np.cross(upright, directions)
+    azimuth = np.arctan2(directions[:, 1], directions[:, 0])
+    a = antenna.amplitudes(directions[:, 2], azimuth)
+    return np.asarray(a.upright)[:, None] * upright + np.asarray(a.level)[:, None] * level + 0j
+
+
+def transmitted(facets: Facets, radio: Radio, points: Floats, field: Complexes) -> Complexes:
+    """Field behind a wall at the second one of two points (n, 2, 3)."""
+    ray = unit(points[:, 1] - points[:, 0])
+    facet = np.argmax(facets.containing(points[:, 1]), axis=1)
+    normal = facets.normals[facet]
+    result = np.empty_like(field)
+    for number in np.unique(facets.slab[facet]):
+        i = facets.slab[facet] == number
+        cos_i = np.abs(dot(ray[i], normal[i]))
+        c = radio.reflect(number, cos_i)
+        wave = 2.0 * np.pi / radio.source.wavelength_m
+        missing = np.exp(1j * wave * radio.slabs[number][1] * cos_i)[:, None]
+        across = unit(np.cross(ray[i], normal[i]))
+        te = dot(field[i], across)[:, None] * across
+        result[i] = missing * (c.t_te[:, None] * te + c.t_tm[:, None] * (field[i] - te))
+    return result
 
 
 def reflected(facets: Facets, radio: Radio, points: Floats, field: Complexes) -> Complexes:
@@ -205,6 +231,31 @@ def _crosses(edge: Edge, points: Floats) -> NDArray[np.bool_]:
     return on
 
 
+def face_dyad(
+    radio: Radio, number: int, angles: tuple[Floats, Floats], beta: tuple[Floats, Floats]
+) -> Complexes:
+    """Reflection (m, 2, 2) of a wedge's face, along the edge before across it.
+
+    Parameters
+    ----------
+    radio, number
+        The face's slab.
+    angles
+        phi' and phi of the rays, from this face [rad].
+    beta
+        Sine and cosine of the angle with the edge, about which the free space lies
+        counter-clockwise of this face.
+    """
+    phi_in, phi = angles
+    sine = np.sqrt(np.abs(np.sin(phi) * np.sin(phi_in)))
+    c = radio.reflect(number, np.minimum(sine * beta[0], 1.0))
+    slant = 0.5 * beta[1] * sine * (np.cos(phi_in) - np.cos(phi))
+    turn = np.arctan2(slant, 1.0 - sine**2)
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    rotation = np.moveaxis(rotation, 2, 0)
+    return rotation @ (np.stack([c.r_te, c.r_tm], 1)[:, :, None] * rotation)
+
+
 def _over(
     edge: Edge, radio: Radio, rays: tuple[Floats, Floats], length: Floats, field: Complexes
 ) -> Complexes:
@@ -212,17 +263,17 @@ def _over(
     phi_in, phi = edge.angles(-s_in), edge.angles(s_out)
     sin_beta = np.linalg.norm(np.cross(edge.tangent, s_out), axis=1)
     n = edge.angle / np.pi
-    faces = []
-    for number, start in ((edge.o_slab, 0.0), (edge.n_slab, edge.angle)):
-        sine = np.sqrt(np.abs(np.sin(phi - start) * np.sin(phi_in - start))) * sin_beta
-        c = radio.reflect(number, np.minimum(sine, 1.0))
-        faces.append((c.r_te, c.r_tm))
+    cos_beta = s_out @ edge.tangent
+    from_n = (edge.angle - phi_in, edge.angle - phi)
+    faces = (
+        face_dyad(radio, edge.o_slab, (phi_in, phi), (sin_beta, cos_beta)),
+        face_dyad(radio, edge.n_slab, from_n, (sin_beta, -cos_beta)),
+    )
     k = 2.0 * np.pi / radio.source.wavelength_m
-    k_distance = k * length * sin_beta**2
-    soft, hard = wedge(n, (phi_in, phi), sin_beta, k_distance, (faces[0], faces[1]))
+    dyad = wedge(n, (phi_in, phi), sin_beta, k * length * sin_beta**2, faces)
     round_in = -unit(np.cross(edge.tangent, s_in))
     round_out = unit(np.cross(edge.tangent, s_out))
     along_in, along_out = np.cross(round_in, s_in), np.cross(round_out, s_out)
-    along = -soft * dot(field, along_in) / np.sqrt(k)
-    across = -hard * dot(field, round_in) / np.sqrt(k)
+    arriving = np.stack([dot(field, along_in), dot(field, round_in)], 1)
+    along, across = -np.einsum("mij,mj->im", dyad, arriving) / np.sqrt(k)
     return along[:, None] * along_out + across[:, None] * round_out

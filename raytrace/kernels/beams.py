@@ -2,34 +2,40 @@
 
 A beam is the image of its root point and a window of two corners, all in the frame of the cell
 it is in (docs/theory.md, section 3). It splits over the edges of its cell with two cross
-products an edge, and a point of the cell is lit when it lies within the window. A window is
-closed on the side that was its right one at the root, so of two beams that share a border just
-one holds it.
+products an edge, and a point of the cell is lit when it lies within the window. A point on the
+border of a window, or of a cell, is lit in a share of its surroundings.
 """
 
+import math
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.plan_view import WALL, Floats, Ints, PlanView, cross, mirrored
+from raytrace.kernels.plan_view import (
+    PARTIAL,
+    TIE_M,
+    Floats,
+    Ints,
+    PlanView,
+    cross,
+    mirrored,
+)
 
-PARENT, EDGE, REFLECTED, CELL, ORDER, FLIPPED, BOUNCES, ITEMS = range(8)
+PARENT, EDGE, REFLECTED, CELL, ORDER, TRANSMITTED, BOUNCES, ITEMS = range(8)
 """Columns of `Tree.link`: the beam it split from; the edge it came through or was mirrored at,
--1 at the root; whether it was mirrored; the cell it is in; wall reflections so far; whether
-their number is odd; floor or ceiling reflections its heights cannot do without; reflections
-and partial walls so far."""
+-1 at the root; whether it was mirrored; the cell it is in; wall reflections so far; full walls
+gone through; floor or ceiling reflections its heights cannot do without; reflections, walls
+gone through and partial walls so far."""
 
 IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y = range(6)
 """Columns of `Tree.beam` [m]: the root's image, and the corners of the window."""
 
+Window = tuple[float, float, float, float]
+"""Right and left corner of a window: x, y, x, y [m]."""
 
 Rows = TypeVar("Rows", bound=NDArray[Any])
-
-
-ON_LINE_M = 1e-8
-"""A point this near to an edge's line sees it edge-on, that is, not at all [m]."""
 
 
 class Tree(NamedTuple):
@@ -40,7 +46,7 @@ class Tree(NamedTuple):
 
 
 class Targets(NamedTuple):
-    """Points that beams may hit, cell by cell.
+    """Points that beams may hit, cell by cell; one on a border is in all cells around it.
 
     Attributes
     ----------
@@ -48,13 +54,31 @@ class Targets(NamedTuple):
         (n_cells + 1,) points of cell c are number[cell_points[c]:cell_points[c + 1]].
     number
         (n,) which point.
+    share
+        (n,) how much of its surroundings is in the cell.
     xy
         (n_points, 2) all points [m].
     """
 
     cell_points: Ints
     number: Ints
+    share: Floats
     xy: Floats
+
+
+class Hits(NamedTuple):
+    """Points that beams light.
+
+    Attributes
+    ----------
+    pair
+        (n, 2) point and beam.
+    share
+        (n,) how much of the point's surroundings is lit.
+    """
+
+    pair: NDArray[np.int32]
+    share: Floats
 
 
 @jit()
@@ -76,9 +100,9 @@ def copy_row(rows: NDArray[Any], to: int, source: int) -> None:
 
 @jit()
 def grow_tree(
-    view: PlanView, bounces: Ints, x: float, y: float, root_cells: Ints, max_order: int
+    view: PlanView, bounces: Ints, x: float, y: float, root_cells: Ints, most: tuple[int, int]
 ) -> Tree:
-    """All beams from a point with at most `max_order` reflections.
+    """All beams from a point with at most so many reflections and transmissions.
 
     Parameters
     ----------
@@ -91,8 +115,9 @@ def grow_tree(
         The root [m].
     root_cells
         The cells it lies in.
-    max_order
-        Most reflections, the needed ones at floor and ceiling included.
+    most
+        Most reflections, the needed ones at floor and ceiling included, and most full walls
+        gone through.
     """
     link = np.zeros((256 + len(root_cells), 8), np.int32)
     beam = np.zeros((256 + len(root_cells), 6))
@@ -104,13 +129,18 @@ def grow_tree(
         n += 1
     i = 0
     while i < n:
-        cell = link[i, CELL]
-        most = 2 * (view.cell_edges[cell + 1] - view.cell_edges[cell])
-        while n + most > len(link):
+        while n + most_children(view, link[i, CELL]) > len(link):
             link, beam = enlarged(link), enlarged(beam)
-        n = split(view, bounces, link, beam, i, n, max_order)
+        n = split(view, bounces, link, beam, i, n, most)
         i += 1
     return Tree(link[:n].copy(), beam[:n].copy())
+
+
+@jit(inner=True)
+def most_children(view: PlanView, cell: int) -> int:
+    """Most beams that one in this cell can split into."""
+    first, last = view.cell_edges[cell], view.cell_edges[cell + 1]
+    return 2 * (last - first) + view.behind_first[last] - view.behind_first[first]
 
 
 @jit(inner=True)
@@ -136,7 +166,7 @@ def split(
     beam: Floats,
     i: int,
     n: int,
-    max_order: int,
+    most: tuple[int, int],
 ) -> int:
     """Write what becomes of beam i at the edges of its cell, from row n on; return the next row."""
     cell = link[i, CELL]
@@ -145,12 +175,15 @@ def split(
         if not lit:
             continue
         needed = max(link[i, BOUNCES], bounces[e, 0])
-        if link[i, ORDER] + needed <= max_order and leads_on(link, i, view.beyond[e]):
+        if link[i, ORDER] + needed <= most[0] and leads_on(link, i, view.beyond[e]):
             pass_through(view, link, beam, i, n, e, window)
+            link[n, CELL] = view.beyond[e]
             link[n, BOUNCES] = needed
             n += 1
+        if link[i, TRANSMITTED] < most[1]:
+            n = transmit(view, link, beam, i, n, e, window)
         needed = max(link[i, BOUNCES], bounces[e, 1])
-        if view.profile[e] >= 0 and link[i, ORDER] + 1 + needed <= max_order:
+        if view.profile[e] >= 0 and link[i, ORDER] + 1 + needed <= most[0]:
             reflect(view, link, beam, i, n, e, window)
             link[n, BOUNCES] = needed
             n += 1
@@ -158,24 +191,37 @@ def split(
 
 
 @jit(inner=True)
-def narrowed(
-    view: PlanView, entry: int, beam: Floats, e: int
-) -> tuple[bool, tuple[float, float, float, float]]:
-    """Whether a beam lights edge e, and the window (right x, y, left x, y) there."""
+def narrowed(view: PlanView, entry: int, beam: Floats, e: int) -> tuple[bool, Window]:
+    """Whether a beam lights edge e, and the window there."""
+    ends = (view.ends[e, 0], view.ends[e, 1], view.ends[e, 2], view.ends[e, 3])
+    if entry >= 0:
+        if view.line[e] == view.line[entry] or not is_wide(beam, ends):
+            return False, ends
+        own = (beam[RIGHT_X], beam[RIGHT_Y], beam[LEFT_X], beam[LEFT_Y])
+        ends = common(beam, own, ends)
+    return is_wide(beam, ends), ends
+
+
+@jit(inline=True)
+def is_wide(beam: Floats, window: Window) -> bool:
+    """Whether a beam's image sees a window from the front, and not edge-on."""
     px, py = beam[IMAGE_X], beam[IMAGE_Y]
-    rx, ry, lx, ly = view.ends[e, 0], view.ends[e, 1], view.ends[e, 2], view.ends[e, 3]
-    off = view.plane[e, 0] * px + view.plane[e, 1] * py - view.plane[e, 2]
-    lit = abs(off) > ON_LINE_M and cross(rx - px, ry - py, lx - px, ly - py) > 0.0
-    if lit and entry >= 0:
-        if view.line[e] == view.line[entry]:
-            lit = False
-        ax, ay, bx, by = beam[RIGHT_X], beam[RIGHT_Y], beam[LEFT_X], beam[LEFT_Y]
-        if cross(ax - px, ay - py, rx - px, ry - py) <= 0.0:
-            rx, ry = ax, ay
-        if cross(lx - px, ly - py, bx - px, by - py) <= 0.0:
-            lx, ly = bx, by
-        lit = lit and cross(rx - px, ry - py, lx - px, ly - py) > 0.0
-    return lit, (rx, ry, lx, ly)
+    ax, ay, bx, by = window[0] - px, window[1] - py, window[2] - px, window[3] - py
+    width = cross(ax, ay, bx, by)
+    return width > 0.0 and width * width > TIE_M * TIE_M * max(ax * ax + ay * ay, bx * bx + by * by)
+
+
+@jit(inner=True)
+def common(beam: Floats, one: Window, other: Window) -> Window:
+    """Part that two windows have in common, as a beam's image sees them."""
+    px, py = beam[IMAGE_X], beam[IMAGE_Y]
+    ax, ay, bx, by = one
+    rx, ry, lx, ly = other
+    if cross(ax - px, ay - py, rx - px, ry - py) <= 0.0:
+        rx, ry = ax, ay
+    if cross(lx - px, ly - py, bx - px, by - py) <= 0.0:
+        lx, ly = bx, by
+    return rx, ry, lx, ly
 
 
 @jit(inner=True)
@@ -186,16 +232,38 @@ def pass_through(
     i: int,
     n: int,
     e: int,
-    window: tuple[float, float, float, float],
+    window: Window,
 ) -> None:
-    """Write beam n: beam i carried on through edge e."""
+    """Write beam n: beam i carried on through edge e, its cell left to the caller."""
     copy_row(link, n, i)
     copy_row(beam, n, i)
     link[n, PARENT], link[n, EDGE], link[n, REFLECTED] = i, e, 0
-    link[n, CELL] = view.beyond[e]
     if view.profile[e] >= 0:
         link[n, ITEMS] += 1
     beam[n, RIGHT_X], beam[n, RIGHT_Y], beam[n, LEFT_X], beam[n, LEFT_Y] = window
+
+
+@jit(inner=True)
+def transmit(
+    view: PlanView,
+    link: NDArray[np.int32],
+    beam: Floats,
+    i: int,
+    n: int,
+    e: int,
+    window: Window,
+) -> int:
+    """Write the beams that go through a full wall, from row n on; return the next row."""
+    for k in range(view.behind_first[e], view.behind_first[e + 1]):
+        f = view.behind[k]
+        back = (view.ends[f, 2], view.ends[f, 3], view.ends[f, 0], view.ends[f, 1])
+        part = common(beam[i], window, back)
+        if is_wide(beam[i], part) and leads_on(link, i, int(view.cell_of[f])):
+            pass_through(view, link, beam, i, n, f, part)
+            link[n, CELL] = view.cell_of[f]
+            link[n, TRANSMITTED] += 1
+            n += 1
+    return n
 
 
 @jit(inner=True)
@@ -206,13 +274,12 @@ def reflect(
     i: int,
     n: int,
     e: int,
-    window: tuple[float, float, float, float],
+    window: Window,
 ) -> None:
     """Write beam n: beam i mirrored at edge e."""
     copy_row(link, n, i)
     link[n, PARENT], link[n, EDGE], link[n, REFLECTED] = i, e, 1
     link[n, ORDER] += 1
-    link[n, FLIPPED] ^= 1
     link[n, ITEMS] += 1
     line = view.plane[e]
     rx, ry, lx, ly = window
@@ -222,45 +289,131 @@ def reflect(
 
 
 @jit(inner=True)
-def is_lit(tree: Tree, i: int, x: float, y: float) -> bool:
-    """Whether a point of beam i's cell lies within its window."""
-    if tree.link[i, EDGE] < 0:
-        return True
+def window_side(beam: Floats, x: float, y: float, side: int) -> tuple[float, float, float]:
+    """How far [m] a point lies inside a beam's right (0) or left (1) border; the way inside."""
+    px, py = beam[IMAGE_X], beam[IMAGE_Y]
+    dx, dy = beam[RIGHT_X + 2 * side] - px, beam[RIGHT_Y + 2 * side] - py
+    per_length = (1.0 - 2.0 * side) / math.sqrt(dx * dx + dy * dy)
+    nx, ny = -dy * per_length, dx * per_length
+    return nx * (x - px) + ny * (y - py), nx, ny
+
+
+@jit(inner=True)
+def edge_side(view: PlanView, e: int, x: float, y: float) -> tuple[float, float, float]:
+    """How far [m] a point lies inside an edge of a cell; the way inside."""
+    dx, dy = view.ends[e, 2] - view.ends[e, 0], view.ends[e, 3] - view.ends[e, 1]
+    per_length = 1.0 / math.sqrt(dx * dx + dy * dy)
+    nx, ny = -dy * per_length, dx * per_length
+    return nx * (x - view.ends[e, 0]) + ny * (y - view.ends[e, 1]), nx, ny
+
+
+@jit(inner=True)
+def share_within(ways: Floats, n: int) -> float:
+    """Share of a point's surroundings within n half planes through it (docs/theory.md, eq. 40).
+
+    Parameters
+    ----------
+    ways, n
+        (>= n, 2) unit normals into the half planes.
+    """
+    widest = 0.0
+    for i in range(n):
+        for j in range(i):
+            turn = cross(ways[i, 0], ways[i, 1], ways[j, 0], ways[j, 1])
+            along = ways[i, 0] * ways[j, 0] + ways[i, 1] * ways[j, 1]
+            widest = max(widest, abs(math.atan2(turn, along)))
+    return 1.0 if n == 0 else max(0.5 - 0.5 * widest / math.pi, 0.0)
+
+
+@jit(inner=True)
+def lit_share(
+    view: PlanView, tree: Tree, i: int, x: float, y: float, cell: int, ways: Floats
+) -> float:
+    """Share of a point's surroundings that beam i lights.
+
+    Parameters
+    ----------
+    view, tree, i
+        Plan view, beams, and which one.
+    x, y
+        The point [m].
+    cell
+        The beam's cell if the point lies on its border; -1 if inside, or where the border does not
+        matter.
+    ways
+        (>= 2 + edges of a cell, 2) room.
+    """
+    n = 0
+    if tree.link[i, EDGE] >= 0:
+        for side in range(2):
+            inside, nx, ny = window_side(tree.beam[i], x, y, side)
+            if inside <= -TIE_M:
+                return 0.0
+            if inside < TIE_M:
+                ways[n, 0], ways[n, 1] = nx, ny
+                n += 1
+    if cell >= 0:
+        for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
+            inside, nx, ny = edge_side(view, e, x, y)
+            if inside < TIE_M:
+                ways[n, 0], ways[n, 1] = nx, ny
+                n += 1
+    return share_within(ways, n)
+
+
+@jit(inline=True)
+def is_beside(tree: Tree, i: int, x: float, y: float) -> bool:
+    """Whether a point is outside beam i's window for sure, which is quick to tell."""
     px, py = tree.beam[i, IMAGE_X], tree.beam[i, IMAGE_Y]
-    right = cross(tree.beam[i, RIGHT_X] - px, tree.beam[i, RIGHT_Y] - py, x - px, y - py)
-    left = cross(x - px, y - py, tree.beam[i, LEFT_X] - px, tree.beam[i, LEFT_Y] - py)
-    if tree.link[i, FLIPPED]:
-        return right > 0.0 and left >= 0.0
-    return right >= 0.0 and left > 0.0
+    dx, dy = x - px, y - py
+    ax, ay = tree.beam[i, RIGHT_X] - px, tree.beam[i, RIGHT_Y] - py
+    bx, by = tree.beam[i, LEFT_X] - px, tree.beam[i, LEFT_Y] - py
+    near = -2.0 * TIE_M * (abs(ax) + abs(ay) + abs(bx) + abs(by))
+    return cross(ax, ay, dx, dy) < near or cross(dx, dy, bx, by) < near
+
+
+@jit(inner=True)
+def most_corners(view: PlanView) -> int:
+    """Most edges of a cell."""
+    most = 0
+    for c in range(len(view.cell_edges) - 1):
+        most = max(most, view.cell_edges[c + 1] - view.cell_edges[c])
+    return most
 
 
 @jit()
-def hit_points(tree: Tree, targets: Targets) -> NDArray[np.int32]:
-    """(n, 2) every lit point with the beam that lights it, beam after beam."""
-    hits = np.empty((1024, 2), np.int32)
+def hit_points(view: PlanView, tree: Tree, targets: Targets) -> Hits:
+    """Every lit point with the beam that lights it, beam after beam."""
+    pair, share = np.empty((1024, 2), np.int32), np.empty((1024, 1))
+    ways = np.empty((2 + most_corners(view), 2))
     n = 0
     for i in range(len(tree.link)):
-        cell = tree.link[i, CELL]
+        cell, is_root = tree.link[i, CELL], tree.link[i, EDGE] < 0
         first, last = targets.cell_points[cell], targets.cell_points[cell + 1]
-        while n + last - first > len(hits):
-            hits = enlarged(hits)
+        while n + last - first > len(pair):
+            pair, share = enlarged(pair), enlarged(share)
         for k in range(first, last):
             point = targets.number[k]
-            if is_lit(tree, i, targets.xy[point, 0], targets.xy[point, 1]):
-                hits[n, 0] = point
-                hits[n, 1] = i
+            x, y = targets.xy[point, 0], targets.xy[point, 1]
+            if not is_root and is_beside(tree, i, x, y):
+                continue
+            border = cell if targets.share[k] < 1.0 else -1
+            lit = lit_share(view, tree, i, x, y, border, ways)
+            if lit > 0.0:
+                pair[n, 0], pair[n, 1], share[n, 0] = point, i, lit
                 n += 1
-    return hits[:n].copy()
+    return Hits(pair[:n].copy(), share[:n, 0].copy())
 
 
 @jit()
-def hit_corners(view: PlanView, tree: Tree) -> NDArray[np.int32]:
-    """(n, 2) every lit corner of a cell, as vertex number, with the beam that lights it.
+def hit_corners(view: PlanView, tree: Tree) -> Hits:
+    """Every lit corner of a cell, as vertex number, with the beam that lights it.
 
     The ends of the edge a beam came through were lit before it, the ends of the edge it was
     mirrored at are no reflection.
     """
-    hits = np.empty((1024, 2), np.int32)
+    pair, share = np.empty((1024, 2), np.int32), np.empty((1024, 1))
+    ways = np.empty((2, 2))
     n = 0
     for i in range(len(tree.link)):
         cell, entry = tree.link[i, CELL], tree.link[i, EDGE]
@@ -268,14 +421,14 @@ def hit_corners(view: PlanView, tree: Tree) -> NDArray[np.int32]:
             v = view.vertex[e, 0]
             if entry >= 0 and (v == view.vertex[entry, 0] or v == view.vertex[entry, 1]):
                 continue
-            if not is_lit(tree, i, view.ends[e, 0], view.ends[e, 1]):
+            lit = lit_share(view, tree, i, view.ends[e, 0], view.ends[e, 1], -1, ways)
+            if lit == 0.0:
                 continue
-            if n == len(hits):
-                hits = enlarged(hits)
-            hits[n, 0] = v
-            hits[n, 1] = i
+            if n == len(pair):
+                pair, share = enlarged(pair), enlarged(share)
+            pair[n, 0], pair[n, 1], share[n, 0] = v, i, lit
             n += 1
-    return hits[:n].copy()
+    return Hits(pair[:n].copy(), share[:n, 0].copy())
 
 
 @jit()
@@ -295,7 +448,7 @@ def hit_partial_walls(view: PlanView, tree: Tree) -> tuple[NDArray[np.int32], Fl
     for i in range(len(tree.link)):
         cell = tree.link[i, CELL]
         for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
-            if view.profile[e] < 0 or view.kind[e] == WALL:
+            if view.kind[e] != PARTIAL:
                 continue
             lit, (rx, ry, lx, ly) = narrowed(view, tree.link[i, EDGE], tree.beam[i], e)
             if not lit:

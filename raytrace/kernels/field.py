@@ -8,14 +8,18 @@ them apart; a wall mixes them by its plan-view angles alone (docs/theory.md, eqs
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.plan_view import Floats, PlanView, folded, material_at
 from raytrace.kernels.unfolding import (
     DISTANCE,
     KIND,
     NORMAL,
+    NUDGE_M,
     PASS_PARTIAL,
-    REFLECT_WALL,
+    REFLECT_PARTIAL,
     SKEW,
     WHAT,
     Leg,
@@ -35,12 +39,19 @@ class Radio(NamedTuple):
         Their slabs.
     slabs
         (n_slabs, steps + 2, 4) see `raytrace.materials.slab_tables`.
+    through
+        (n_slabs, steps + 2, 4) see `raytrace.materials.transmission_tables`; of no slab where
+        paths go through no wall.
     transition
         (steps + 2, 2) F(s^2) / s of the UTD transition function, see `raytrace.kernels.utd`.
     cis
         (steps + 1, 2) cosine and sine of a turn.
     transmit, receive
-        (steps + 2,) antenna amplitudes over the direction's z component from -1 to 1.
+        (steps + 2,) antenna amplitudes over the direction's z component from -1 to 1, where both
+        are the same all around and polarised upright.
+    patterns
+        (2, n_elevations, n_azimuths, 2) of transmitter and receiver else, upright and level (see
+        `raytrace.antennas.antenna_tables`); empty where the above do.
     """
 
     wavelength: float
@@ -48,10 +59,12 @@ class Radio(NamedTuple):
     floor: int
     ceiling: int
     slabs: Floats
+    through: Floats
     transition: Floats
     cis: Floats
     transmit: Floats
     receive: Floats
+    patterns: NDArray[np.complex128]
 
 
 class Ray(NamedTuple):
@@ -77,8 +90,8 @@ class Ray(NamedTuple):
 
 
 @jit(inline=True, fast=True)
-def slab_reflection(slabs: Floats, slab: int, cosine: float) -> tuple[complex, complex]:
-    """R_tm and (R_te + R_tm) / sin^2 of a slab, by linear interpolation."""
+def slab_lookup(slabs: Floats, slab: int, cosine: float) -> tuple[complex, complex]:
+    """R_tm and (R_te + R_tm) / sin^2, or T_tm and (T_te - T_tm) / sin^2, of a slab."""
     steps = slabs.shape[1] - 2
     t = cosine * steps
     k = int(t)
@@ -93,7 +106,7 @@ def slab_reflection(slabs: Floats, slab: int, cosine: float) -> tuple[complex, c
 @jit(inline=True, fast=True)
 def both_reflections(slabs: Floats, slab: int, cosine: float) -> tuple[complex, complex]:
     """R_tm and R_te of a slab."""
-    tm, mix = slab_reflection(slabs, slab, cosine)
+    tm, mix = slab_lookup(slabs, slab, cosine)
     return tm, mix * (1.0 - cosine * cosine) - tm
 
 
@@ -134,12 +147,16 @@ def new_ray(radio: Radio, slope: float, bounces: int) -> Ray:
     return Ray(slope, cos_el, sin_el, tm, te, tm2, te2)
 
 
+EDGE_OF_STOREY = 1e-9
+"""A wall met this near to floor or ceiling is met before them [storeys]."""
+
+
 @jit(inline=True, fast=True)
 def bounced(
     ray: Ray, storeys: float, upright: complex, level: complex, done: int
 ) -> tuple[complex, complex, int]:
     """Apply the floor and ceiling reflections up to an unfolded height of that many storeys."""
-    due = abs(math.floor(storeys))
+    due = abs(math.floor(storeys - math.copysign(EDGE_OF_STOREY, ray.slope)))
     while done < due:
         if done & 1:
             upright, level = upright * ray.second_tm, level * ray.second_te
@@ -147,6 +164,16 @@ def bounced(
             upright, level = upright * ray.first_tm, level * ray.first_te
         done += 1
     return upright, level, done
+
+
+@jit(inline=True)
+def solid_at(view: PlanView, profile: int, z: float) -> int:
+    """Material of a profile at or next to a height where a leg is reflected."""
+    material = material_at(view, profile, z)
+    if material < 0:
+        above = material_at(view, profile, z + NUDGE_M)
+        material = above if above >= 0 else material_at(view, profile, z - NUDGE_M)
+    return material
 
 
 @jit(inline=True, fast=True)
@@ -181,28 +208,111 @@ def carried(
     upright, level, done = field
     per_height = 1.0 / radio.height
     for k in range(n):
-        kind, what = leg.marks[k, KIND], leg.marks[k, WHAT]
-        if kind == PASS_PARTIAL:
+        kind, slab = leg.marks[k, KIND], leg.marks[k, WHAT]
+        passes = kind >= PASS_PARTIAL
+        if kind == PASS_PARTIAL and len(radio.through) == 0:
             continue
         z = z_root + ray.slope * leg.items[k, DISTANCE]
         upright, level, done = bounced(ray, z * per_height, upright, level, done)
-        slab = what
-        if kind != REFLECT_WALL:
-            slab = material_at(view, what, folded(z, radio.height))
+        if kind == PASS_PARTIAL:
+            slab = material_at(view, slab, folded(z, radio.height))
+            if slab < 0:
+                continue
+        elif kind == REFLECT_PARTIAL:
+            slab = solid_at(view, slab, folded(z, radio.height))
         normal = leg.items[k, NORMAL]
-        tm, mix = slab_reflection(radio.slabs, slab, abs(normal) * ray.cos_el)
+        tm, mix = slab_lookup(
+            radio.through if passes else radio.slabs, slab, abs(normal) * ray.cos_el
+        )
         a = leg.items[k, SKEW]
         b = normal * ray.sin_el
         if not done & 1:
             b = -b
         t = (upright * a + level * b) * mix
-        upright = t * a - tm * upright
-        level = tm * level - t * b
+        if passes:
+            upright = tm * upright + t * a
+            level = tm * level + t * b
+        else:
+            upright = t * a - tm * upright
+            level = tm * level - t * b
     return bounced(ray, (z_root + ray.slope * length) * per_height, upright, level, done)
 
 
-@jit(inline=True, fast=True)
-def antenna_gain(radio: Radio, ray: Ray, done: int) -> float:
-    """Amplitude of both antennas on a ray that leaves and arrives at the same elevation."""
-    arriving = ray.sin_el if done & 1 else -ray.sin_el
-    return interpolated(radio.transmit, ray.sin_el) * interpolated(radio.receive, arriving)
+@jit(inner=True)
+def pattern_at(
+    pattern: NDArray[np.complex128], x: float, y: float, sine: float
+) -> tuple[complex, complex]:
+    """Upright and level amplitude towards a direction (see `raytrace.antennas.antenna_tables`).
+
+    Parameters
+    ----------
+    pattern
+        (n_elevations, n_azimuths, 2) of one antenna.
+    x, y
+        Horizontal direction, of length 1.
+    sine
+        Of the elevation.
+    """
+    cosine = math.sqrt(max(1.0 - sine * sine, 0.0))
+    row = (1.0 + sine / (abs(sine) + cosine)) * 0.5 * (pattern.shape[0] - 1)
+    quarter = abs(y) / max(abs(x) + abs(y), 1e-300)
+    if x >= 0.0:
+        turn = quarter if y >= 0.0 else 4.0 - quarter
+    else:
+        turn = 2.0 - quarter if y >= 0.0 else 2.0 + quarter
+    column = turn * 0.25 * (pattern.shape[1] - 1)
+    i = min(int(row), pattern.shape[0] - 2)
+    j = min(int(column), pattern.shape[1] - 2)
+    v, w = row - i, column - j
+    low, high = pattern[i], pattern[i + 1]
+    upright = (1.0 - v) * ((1.0 - w) * low[j, 0] + w * low[j + 1, 0])
+    upright += v * ((1.0 - w) * high[j, 0] + w * high[j + 1, 0])
+    level = (1.0 - v) * ((1.0 - w) * low[j, 1] + w * low[j + 1, 1])
+    level += v * ((1.0 - w) * high[j, 1] + w * high[j + 1, 1])
+    return upright, level
+
+
+@jit(inline=True)
+def sent(radio: Radio, direction: tuple[float, float], sine: float) -> tuple[complex, complex]:
+    """Upright and level amplitude that the transmitter sends out.
+
+    Parameters
+    ----------
+    radio
+        The antennas.
+    direction, sine
+        Horizontal direction of departure, of length 1, and sine of the elevation.
+    """
+    if len(radio.patterns) == 0:
+        return complex(interpolated(radio.transmit, sine)), 0j
+    return pattern_at(radio.patterns[0], direction[0], direction[1], sine)
+
+
+@jit(inline=True)
+def received(
+    radio: Radio,
+    field: tuple[complex, complex],
+    direction: tuple[float, float],
+    sine: float,
+) -> complex:
+    """What the receiver takes up of a field.
+
+    Parameters
+    ----------
+    radio
+        The antennas.
+    field
+        Upright and level amplitude.
+    direction, sine
+        Horizontal direction that the ray comes from, of length 1, and sine of its elevation.
+    """
+    if len(radio.patterns) == 0:
+        return field[0] * interpolated(radio.receive, sine)
+    upright, level = pattern_at(radio.patterns[1], direction[0], direction[1], sine)
+    return upright * field[0] - level * field[1]
+
+
+@jit(inline=True)
+def arriving_sine(ray: Ray, done: int) -> float:
+    """Sine of the elevation that a ray comes from, after so many bounces."""
+    return ray.sin_el if done & 1 else -ray.sin_el

@@ -5,10 +5,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.kernels.beams import Tree
+from raytrace.kernels.beams import Hits, Tree
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.field import EDGE_OF_STOREY
 from raytrace.kernels.level_edges import Rim, RimLegsIn, new_work, unfold_over_rim
-from raytrace.kernels.plan_view import Floats, folded
+from raytrace.kernels.plan_view import Floats, PlanView, folded, material_at
 from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import Record, Trace
 from raytrace.kernels.unfolding import (
@@ -17,6 +18,8 @@ from raytrace.kernels.unfolding import (
     ITEM_Y,
     KIND,
     PASS_PARTIAL,
+    PASS_WALL,
+    WHAT,
     Leg,
     most_items,
     new_leg,
@@ -24,7 +27,7 @@ from raytrace.kernels.unfolding import (
 )
 from raytrace.kernels.upright_edges import Edge, LegsIn
 
-NOTHING, REFLECTION, DIFFRACTION = 0, 1, 2
+NOTHING, REFLECTION, DIFFRACTION, TRANSMISSION = 0, 1, 2, 3
 """Interactions, as in `Paths.interactions`."""
 
 
@@ -39,22 +42,33 @@ def add_point(
 
 
 @jit()
+def interaction(view: PlanView, mark: int, what: int, z: float) -> int:
+    """What happens at an item met at height z."""
+    if mark == PASS_WALL:
+        return TRANSMISSION
+    if mark == PASS_PARTIAL:
+        return NOTHING if material_at(view, what, z) < 0 else TRANSMISSION
+    return REFLECTION
+
+
+@jit()
 def add_leg(
-    leg: Leg,
-    n: int,
-    length: float,
+    view: PlanView,
+    whole: tuple[Leg, int, float],
     heights: tuple[float, float, float],
     end: tuple[float, float],
     points: Floats,
     kinds: NDArray[np.int8],
     k: int,
 ) -> int:
-    """Append the reflections of a leg, walls and slabs in their order.
+    """Append what a leg meets, walls, floor and ceiling in their order.
 
     Parameters
     ----------
-    leg, n, length
-        The leg, its items, its horizontal length [m].
+    view
+        The plan view.
+    whole
+        The leg, its number of items, its horizontal length [m].
     heights
         Unfolded height at its root [m], slope, and height of the ceiling [m].
     end
@@ -67,22 +81,26 @@ def add_leg(
     int
         How many points there are now.
     """
-    z_root, slope, height = heights
+    (leg, n, length), (z_root, slope, height) = whole, heights
     done, x, y = 0.0, points[k - 1, 0], points[k - 1, 1]
-    storey = math.floor(z_root / height) + (1.0 if slope > 0.0 else 0.0)
+    rising = math.copysign(1.0, slope)
+    storey = math.floor(z_root / height - rising * EDGE_OF_STOREY) + max(rising, 0.0)
+    at_edge = EDGE_OF_STOREY * height / abs(slope) if slope != 0.0 else 0.0
     for item in range(n + 1):
         last = item == n
         distance = length if last else leg.items[item, DISTANCE]
         to_x = end[0] if last else leg.items[item, ITEM_X]
         to_y = end[1] if last else leg.items[item, ITEM_Y]
-        while slope != 0.0 and (storey * height - z_root) / slope < distance:
+        while slope != 0.0 and (storey * height - z_root) / slope < distance - at_edge:
             w = ((storey * height - z_root) / slope - done) / (distance - done)
             z = height if int(storey) & 1 else 0.0
             k = add_point(points, kinds, k, REFLECTION, (x + w * (to_x - x), y + w * (to_y - y), z))
-            storey += 1.0 if slope > 0.0 else -1.0
-        if not last and leg.marks[item, KIND] != PASS_PARTIAL:
+            storey += rising
+        if not last:
             z = folded(z_root + slope * distance, height)
-            k = add_point(points, kinds, k, REFLECTION, (to_x, to_y, z))
+            kind = interaction(view, leg.marks[item, KIND], leg.marks[item, WHAT], z)
+            if kind != NOTHING:
+                k = add_point(points, kinds, k, kind, (to_x, to_y, z))
         done, x, y = distance, to_x, to_y
     return k
 
@@ -107,7 +125,7 @@ def finish_path(trace: Trace, r: int, points: Floats, k: int) -> None:
 def reflection_points(
     trace: Trace,
     tree: Tree,
-    hits: NDArray[np.int32],
+    hits: Hits,
     record: Record,
     points: Floats,
     kinds: NDArray[np.int8],
@@ -116,13 +134,13 @@ def reflection_points(
     leg = new_leg(most_items(tree.link))
     z = trace.source[2]
     for path in range(record.used[0]):
-        r, i = hits[record.key[path, 0], 0], hits[record.key[path, 0], 1]
+        r, i = hits.pair[record.key[path, 0], 0], hits.pair[record.key[path, 0], 1]
         end = (trace.receivers[r, 0], trace.receivers[r, 1])
         n, length, _, _ = unfold(trace.plan, tree.link, tree.beam, i, end, leg)
         slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / length
         k = start_path(trace, points[path], kinds[path])
         heights = (z, slope, trace.radio.height)
-        k = add_leg(leg, n, length, heights, end, points[path], kinds[path], k)
+        k = add_leg(trace.plan, (leg, n, length), heights, end, points[path], kinds[path], k)
         finish_path(trace, r, points[path], k)
 
 
@@ -132,7 +150,7 @@ def upright_points(
     edge: Edge,
     legs_in: LegsIn,
     tree: Tree,
-    hits: NDArray[np.int32],
+    hits: Hits,
     record: Record,
     points: Floats,
     kinds: NDArray[np.int8],
@@ -144,7 +162,7 @@ def upright_points(
         hit, p = record.key[path, 0], record.key[path, 1]
         leg_in = Leg(legs_in.items[p], legs_in.marks[p])
         n_in, length_in = int(legs_in.n_items[p]), float(legs_in.length[p])
-        r, i = hits[hit, 0], hits[hit, 1]
+        r, i = hits.pair[hit, 0], hits.pair[hit, 1]
         end = (trace.receivers[r, 0], trace.receivers[r, 1])
         n, length, _, _ = unfold(trace.plan, tree.link, tree.beam, i, end, leg)
         slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / (length_in + length)
@@ -152,9 +170,9 @@ def upright_points(
         row, kind = points[path], kinds[path]
         k = start_path(trace, row, kind)
         at = (edge.x, edge.y)
-        k = add_leg(leg_in, n_in, length_in, (z, slope, height), at, row, kind, k)
+        k = add_leg(trace.plan, (leg_in, n_in, length_in), (z, slope, height), at, row, kind, k)
         k = add_point(row, kind, k, DIFFRACTION, (edge.x, edge.y, folded(z_edge, height)))
-        k = add_leg(leg, n, length, (z_edge, slope, height), end, row, kind, k)
+        k = add_leg(trace.plan, (leg, n, length), (z_edge, slope, height), end, row, kind, k)
         finish_path(trace, r, row, k)
 
 
@@ -164,7 +182,7 @@ def level_points(
     rim: Rim,
     source: tuple[Tree, RimLegsIn],
     strips: StripTree,
-    lit: tuple[NDArray[np.int32], Floats],
+    lit: tuple[Hits, Floats],
     record: Record,
     points: Floats,
     kinds: NDArray[np.int8],
@@ -178,7 +196,7 @@ def level_points(
     for path in range(record.used[0]):
         hit, p = int(record.key[path, 0]), int(record.key[path, 1])
         a, b = int(record.key[path, 2]), int(record.key[path, 3])
-        r, i = hits[hit, 0], hits[hit, 1]
+        r, i = hits.pair[hit, 0], hits.pair[hit, 1]
         rise_in = float(rim.z - z_in[a])
         rise_out = float(trace.image_z[trace.level[r], b] - rim.z)
         in_, out = math.hypot(legs_in.h[p], rise_in), math.hypot(seen[hit, 1], rise_out)
@@ -191,9 +209,9 @@ def level_points(
         row, kind = points[path], kinds[path]
         k = start_path(trace, row, kind)
         heights = (trace.source[2], slope, height)
-        k = add_leg(work.leg_in, n_in, length_in, heights, at, row, kind, k)
+        k = add_leg(trace.plan, (work.leg_in, n_in, length_in), heights, at, row, kind, k)
         k = add_point(row, kind, k, DIFFRACTION, (at[0], at[1], rim.z))
         end = (trace.receivers[r, 0], trace.receivers[r, 1])
         heights = (rim.z, rise_out / length, height)
-        k = add_leg(work.leg_out, n, length, heights, end, row, kind, k)
+        k = add_leg(trace.plan, (work.leg_out, n, length), heights, end, row, kind, k)
         finish_path(trace, r, row, k)

@@ -14,6 +14,10 @@ Ints = NDArray[np.int64]
 WALL, PARTIAL, PORTAL = 0, 1, 2
 """Kinds of cell edges: solid at every height, open at some, open at all."""
 
+TIE_M = 1e-7
+"""A ray that passes a corner or a rim no further off than this goes through it [m]. What differs
+on its two sides then counts half on either (docs/conventions.md, "Ties")."""
+
 
 class PlanView(NamedTuple):
     """Convex cells of the plan view and their edges, counter-clockwise.
@@ -35,7 +39,13 @@ class PlanView(NamedTuple):
     profile
         (n_edges,) what stands on the edge over the height, -1 for a portal.
     twin, beyond
-        (n_edges,) the same edge seen from the other cell, and that cell; -1 where there is none.
+        (n_edges,) the same edge seen from the other cell, and that cell, where a ray can pass
+        at some height; -1 where there is none.
+    behind_first, behind
+        Edges of other cells at the back of edge e, where it is a wall, are
+        behind[behind_first[e]:behind_first[e + 1]].
+    cell_of
+        (n_edges,) the cell of each edge.
     profile_bins
         (n_profiles + 1,) height intervals of profile p are profile_bins[p]:profile_bins[p + 1].
     bin_top, bin_material
@@ -51,6 +61,9 @@ class PlanView(NamedTuple):
     profile: Ints
     twin: Ints
     beyond: Ints
+    behind_first: Ints
+    behind: Ints
+    cell_of: Ints
     profile_bins: Ints
     bin_top: Floats
     bin_material: Ints

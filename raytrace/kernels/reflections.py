@@ -2,19 +2,16 @@
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
-from raytrace.kernels.beams import ORDER, Tree
+from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Hits, Tree
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.field import antenna_gain, carried, new_ray, phasor
-from raytrace.kernels.tracing import Record, Sums, Trace, recorded
-from raytrace.kernels.unfolding import Leg, heights_fit, unfold
+from raytrace.kernels.field import arriving_sine, carried, new_ray, phasor, received, sent
+from raytrace.kernels.tracing import Record, Sums, Trace, arrived, recorded, straight_line
+from raytrace.kernels.unfolding import Leg, fitting, unfold
 
 
 @jit(fast=True, allocates=False)
 def sum_reflections(
-    trace: Trace, tree: Tree, hits: NDArray[np.int32], leg: Leg, sums: Sums, record: Record
+    trace: Trace, tree: Tree, hits: Hits, leg: Leg, sums: Sums, record: Record
 ) -> None:
     """Add the paths of all hits of the source's beam tree.
 
@@ -23,33 +20,35 @@ def sum_reflections(
     trace, tree
         The trace and the beams from the source.
     hits
-        (n, 2) receiver and beam.
+        Receivers and beams.
     leg
         Room for the longest leg.
     sums, record
         Added to.
     """
-    z_source = trace.source[2]
-    for hit in range(len(hits)):
-        r, i = hits[hit, 0], hits[hit, 1]
-        target = (trace.receivers[r, 0], trace.receivers[r, 1])
-        n, length, _, _ = unfold(trace.plan, tree.link, tree.beam, i, target, leg)
-        order = tree.link[i, ORDER]
+    z_source, height = trace.source[2], trace.radio.height
+    for hit in range(len(hits.pair)):
+        r, i = hits.pair[hit, 0], hits.pair[hit, 1]
+        x, y = trace.receivers[r, 0], trace.receivers[r, 1]
+        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (x, y), leg)
+        arriving = (tree.beam[i, IMAGE_X] - x) / length, (tree.beam[i, IMAGE_Y] - y) / length
+        order, straight = tree.link[i, ORDER], straight_line(trace, r)
         for k in range(2 * (trace.max_order - order) + 1):
             rise = trace.image_z[trace.level[r], k] - z_source
             slope = rise / length
-            if not heights_fit(trace.plan, leg, n, z_source, slope, trace.radio.height):
+            share = fitting(trace.plan, leg, n, z_source, slope, height, trace.max_walls)
+            share *= hits.share[hit]
+            if share == 0.0:
                 continue
             bounces = trace.image_bounces[k]
             ray = new_ray(trace.radio, slope, bounces)
-            upright, _, done = carried(
-                trace.plan, trace.radio, leg, n, length, ray, z_source, (1.0 + 0j, 0j, 0)
+            upright, level = sent(trace.radio, (ux, uy), ray.sin_el)
+            upright, level, done = carried(
+                trace.plan, trace.radio, leg, n, length, ray, z_source, (upright, level, 0)
             )
+            gain = received(trace.radio, (upright, level), arriving, arriving_sine(ray, done))
             distance = math.sqrt(length * length + rise * rise)
             size = trace.radio.wavelength / (4.0 * math.pi * distance)
-            size *= antenna_gain(trace.radio, ray, done)
-            gain = upright * size * phasor(trace.radio.cis, distance / trace.radio.wavelength)
-            sums.field[r] += gain
-            sums.power[r] += gain.real * gain.real + gain.imag * gain.imag
-            sums.n_paths[r, order + bounces] += 1
-            recorded(record, hit, -1, (-1, k), gain)
+            gain *= size * phasor(trace.radio.cis, distance / trace.radio.wavelength)
+            arrived(sums, r, order + bounces, (gain, distance - straight, share), arriving)
+            recorded(record, hit, -1, (-1, k), gain, share)

@@ -18,13 +18,17 @@ from raytrace.kernels.beams import (
     ORDER,
     PARENT,
     REFLECTED,
+    TRANSMITTED,
+    Hits,
     Targets,
+    Window,
     copy_row,
     enlarged,
     leads_on,
+    most_children,
 )
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.plan_view import Floats, Ints, PlanView
+from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView
 
 STEEPEST = 1e5
 """Largest |m| of a ray that leaves a level edge."""
@@ -39,7 +43,7 @@ class StripTree(NamedTuple):
     Attributes
     ----------
     link
-        (n, 8) int32, as in `beams.Tree`; FLIPPED is not used.
+        (n, 8) int32, as in `beams.Tree`.
     frame
         (n, 7) x = f[0] X + f[1] Y + f[2] and h = f[3] X + f[4] Y + f[5] of a point of the beam's
         cell; f[6] is -1 where the frame is mirrored, else 1.
@@ -128,17 +132,23 @@ def is_sliver(rays: Floats, n: int) -> bool:
 
 @jit(inner=True)
 def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, out: Floats) -> int:
-    """Clip beam i to the part that meets edge e; corners to `out`, return how many, 0 if none.
+    """Clip beam i to the part that meets edge e; corners to `out`, return how many, 0 if none."""
+    n = tree.first[i + 1] - tree.first[i]
+    copy_rays(tree.rays, tree.first[i], n, out, 0)
+    ends = (view.ends[e, 0], view.ends[e, 1], view.ends[e, 2], view.ends[e, 3])
+    return between(tree.frame[i], ends, n, work, out)
+
+
+@jit(inner=True)
+def between(frame: Floats, ends: Window, n: int, work: Floats, out: Floats) -> int:
+    """Clip the n rays in `out` to those between two corners; return how many are left.
 
     A polygon of almost no width could by rounding light an edge from behind; its mean ray tells.
     """
-    frame = tree.frame[i]
-    x1, h1 = in_frame(frame, view.ends[e, 0], view.ends[e, 1])
-    x2, h2 = in_frame(frame, view.ends[e, 2], view.ends[e, 3])
+    x1, h1 = in_frame(frame, ends[0], ends[1])
+    x2, h2 = in_frame(frame, ends[2], ends[3])
     if h1 <= 1e-9 and h2 <= 1e-9:
         return 0
-    n = tree.first[i + 1] - tree.first[i]
-    copy_rays(tree.rays, tree.first[i], n, out, 0)
     if h1 > 1e-9:
         copy_rays(out, 0, n, work, 0)
         n = clipped(work, n, x1, h1, frame[6], out)
@@ -174,19 +184,32 @@ def write_box(rays: Floats, length: float) -> None:
     rays[2, 1] = rays[3, 1] = STEEPEST
 
 
+PASSES, IS_MIRRORED, GOES_THROUGH = 0, 1, 2
+"""What a beam does at an edge."""
+
+
 @jit(inner=True)
 def follow(
-    view: PlanView, link: NDArray[np.int32], frame: Floats, i: int, n: int, e: int, way: int
+    view: PlanView, tree: StripTree, i: int, n: int, e: int, way: int, corners: int, rays: Floats
 ) -> None:
-    """Make beam n, a copy of beam i, the one that passes edge e (way 0) or is mirrored (1)."""
-    link[n, PARENT], link[n, EDGE], link[n, REFLECTED] = i, e, way
-    link[n, ORDER] += way
+    """Make beam n the part of beam i that passes edge e, is mirrored there, or goes through."""
+    link, frame, first = tree.link, tree.frame, tree.first
+    copy_row(link, n, i)
+    copy_row(frame, n, i)
+    link[n, PARENT], link[n, EDGE] = i, e
+    link[n, REFLECTED] = 1 if way == IS_MIRRORED else 0
     if view.profile[e] >= 0:
         link[n, ITEMS] += 1
-    if way == 0:
+    if way == IS_MIRRORED:
+        link[n, ORDER] += 1
+        mirror_frame(frame[n], view.plane[e])
+    elif way == PASSES:
         link[n, CELL] = view.beyond[e]
     else:
-        mirror_frame(frame[n], view.plane[e])
+        link[n, CELL] = view.cell_of[e]
+        link[n, TRANSMITTED] += 1
+    copy_rays(rays, 0, corners, tree.rays, first[n])
+    first[n + 1] = first[n] + corners
 
 
 @jit(inner=True)
@@ -196,12 +219,12 @@ def split_strip(
     tree: StripTree,
     i: int,
     n: int,
-    max_order: int,
+    most: tuple[int, int],
     room: tuple[Floats, Floats],
 ) -> int:
     """Write what becomes of beam i at the edges of its cell, from row n on; return the next row."""
     work, out = room
-    link, first = tree.link, tree.first
+    link = tree.link
     cell = link[i, CELL]
     for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
         if view.line[e] == view.line[link[i, EDGE]]:
@@ -209,26 +232,41 @@ def split_strip(
         corners = through_edge(view, tree, i, e, work, out)
         if corners == 0:
             continue
-        for way in range(2):
+        for way in (PASSES, IS_MIRRORED):
             needed = max(link[i, BOUNCES], bounces[e, way])
             possible = leads_on(link, i, view.beyond[e]) if way == 0 else view.profile[e] >= 0
-            if not possible or link[i, ORDER] + way + needed > max_order:
+            if not possible or link[i, ORDER] + way + needed > most[0]:
                 continue
-            copy_row(link, n, i)
-            copy_row(tree.frame, n, i)
+            follow(view, tree, i, n, e, way, corners, out)
             link[n, BOUNCES] = needed
-            follow(view, link, tree.frame, i, n, e, way)
-            copy_rays(out, 0, corners, tree.rays, first[n])
-            first[n + 1] = first[n] + corners
+            n += 1
+        if link[i, TRANSMITTED] < most[1]:
+            n = transmit_strip(view, tree, i, n, e, room)
+    return n
+
+
+@jit(inner=True)
+def transmit_strip(
+    view: PlanView, tree: StripTree, i: int, n: int, e: int, room: tuple[Floats, Floats]
+) -> int:
+    """Write the beams that go through a full wall, from row n on; return the next row."""
+    work, out = room
+    for k in range(view.behind_first[e], view.behind_first[e + 1]):
+        f = view.behind[k]
+        back = (view.ends[f, 2], view.ends[f, 3], view.ends[f, 0], view.ends[f, 1])
+        corners = through_edge(view, tree, i, e, work, out)
+        corners = between(tree.frame[i], back, corners, work, out)
+        if corners > 0 and leads_on(tree.link, i, int(view.cell_of[f])):
+            follow(view, tree, i, n, f, GOES_THROUGH, corners, out)
             n += 1
     return n
 
 
 @jit()
 def grow_strips(
-    view: PlanView, bounces: Ints, root: int, root_cell: int, max_order: int
+    view: PlanView, bounces: Ints, root: int, root_cell: int, most: tuple[int, int]
 ) -> StripTree:
-    """All beams from one side of an edge, with at most `max_order` reflections.
+    """All beams from one side of an edge, with at most so many reflections and transmissions.
 
     Parameters
     ----------
@@ -236,8 +274,8 @@ def grow_strips(
         As for `beams.grow_tree`.
     root, root_cell
         The edge, as seen from the cell that the beams go into.
-    max_order
-        Most reflections.
+    most
+        Most reflections, and most full walls gone through.
     """
     link = np.zeros((256, 8), np.int32)
     frame = np.empty((256, 7))
@@ -252,17 +290,16 @@ def grow_strips(
     n = 1
     i = 0
     while i < n:
-        cell = link[i, CELL]
-        most = 2 * (view.cell_edges[cell + 1] - view.cell_edges[cell])
+        children = most_children(view, link[i, CELL])
         corners = first[i + 1, 0] - first[i, 0] + 2
-        while n + most >= len(link):
+        while n + children >= len(link):
             link, frame, first = enlarged(link), enlarged(frame), enlarged(first)
-        while first[n, 0] + most * corners > len(rays):
+        while first[n, 0] + children * corners > len(rays):
             rays = enlarged(rays)
         while corners > len(out):
             work, out = enlarged(work), enlarged(out)
         tree = StripTree(link, frame, first[:, 0], rays)
-        n = split_strip(view, bounces, tree, i, n, max_order, (work, out))
+        n = split_strip(view, bounces, tree, i, n, most, (work, out))
         i += 1
     return StripTree(
         link[:n].copy(), frame[:n].copy(), first[: n + 1, 0].copy(), rays[: first[n, 0]].copy()
@@ -270,18 +307,18 @@ def grow_strips(
 
 
 @jit()
-def hit_from_strip(tree: StripTree, targets: Targets) -> tuple[NDArray[np.int32], Floats]:
+def hit_from_strip(tree: StripTree, targets: Targets) -> tuple[Hits, Floats]:
     """Points that beams from a segment light.
 
     Returns
     -------
     hits
-        (n, 2) int32 point and beam.
+        Points and beams; the share is that of the point's cell.
     seen
         (n, 4) the point as (x, h) in the edge's frame, and the stretch of the edge that sees it
         [m].
     """
-    hits = np.empty((1024, 2), np.int32)
+    pair, share = np.empty((1024, 2), np.int32), np.empty((1024, 1))
     seen = np.empty((1024, 4))
     n = 0
     for i in range(len(tree.link)):
@@ -289,17 +326,17 @@ def hit_from_strip(tree: StripTree, targets: Targets) -> tuple[NDArray[np.int32]
         for k in range(targets.cell_points[cell], targets.cell_points[cell + 1]):
             point = targets.number[k]
             x, h = in_frame(tree.frame[i], targets.xy[point, 0], targets.xy[point, 1])
-            if h <= 1e-9:
+            if h <= TIE_M:
                 continue
             low, high = stretch_through(tree.rays[tree.first[i] : tree.first[i + 1]], x, h)
             if high - low <= SLIVER_M:
                 continue
-            if n == len(hits):
-                hits, seen = enlarged(hits), enlarged(seen)
-            hits[n, 0], hits[n, 1] = point, i
+            if n == len(pair):
+                pair, share, seen = enlarged(pair), enlarged(share), enlarged(seen)
+            pair[n, 0], pair[n, 1], share[n, 0] = point, i, targets.share[k]
             seen[n, 0], seen[n, 1], seen[n, 2], seen[n, 3] = x, h, low, high
             n += 1
-    return hits[:n].copy(), seen[:n].copy()
+    return Hits(pair[:n].copy(), share[:n, 0].copy()), seen[:n].copy()
 
 
 @jit(inner=True)

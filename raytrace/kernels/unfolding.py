@@ -12,18 +12,34 @@ from numpy.typing import NDArray
 
 from raytrace.kernels.beams import EDGE, IMAGE_X, IMAGE_Y, ITEMS, PARENT, REFLECTED
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.plan_view import WALL, Floats, Ints, PlanView, cross, folded, material_at
+from raytrace.kernels.plan_view import (
+    TIE_M,
+    WALL,
+    Floats,
+    Ints,
+    PlanView,
+    cross,
+    folded,
+    material_at,
+)
 
-REFLECT_WALL, REFLECT_PARTIAL, PASS_PARTIAL = 0, 1, 2
-"""What a leg does at an item: is reflected by a wall, by a partial wall, or passes it."""
+REFLECT_WALL, REFLECT_PARTIAL, PASS_PARTIAL, PASS_WALL = 0, 1, 2, 3
+"""What a leg does at an item: is reflected by a wall, by a partial wall, passes one that is open
+at some heights, or goes through a wall."""
 
 DISTANCE, SKEW, NORMAL, ITEM_X, ITEM_Y = range(5)
 """Columns of `Leg.items`: horizontal distance from the root [m]; sine and cosine of the plan-view
 direction against the wall's normal; where it is [m]."""
 
 KIND, WHAT = range(2)
-"""Columns of `Leg.marks`: one of the three above; the slab (full wall) or the profile."""
+"""Columns of `Leg.marks`: one of the four above; the slab (full wall) or the profile."""
 
+MISFIT, TOUCHING = -1, -2
+"""What `walls_met` finds of a leg that its heights rule out, or that just touches a rim."""
+
+
+NUDGE_M = 2.0 * TIE_M
+"""How far above and below a leg that touches a rim it is looked at."""
 
 NEAREST_M = 1e-9
 """Shortest horizontal leg [m]: a receiver straight above the source is taken this far off."""
@@ -122,17 +138,24 @@ def mark_of(view: PlanView, e: int, passed: bool) -> tuple[int, int]:
     """Kind of an item and what it stands for."""
     profile = int(view.profile[e])
     if view.kind[e] == WALL:
-        return REFLECT_WALL, int(view.bin_material[view.profile_bins[profile]])
+        slab = int(view.bin_material[view.profile_bins[profile]])
+        return (PASS_WALL if passed else REFLECT_WALL), slab
     if passed:
         return PASS_PARTIAL, profile
     return REFLECT_PARTIAL, profile
 
 
 @jit(inline=True)
-def heights_fit(
-    view: PlanView, leg: Leg, n: int, z_root: float, slope: float, height: float
-) -> bool:
-    """Whether a leg finds wall where it is reflected and none where it passes.
+def walls_met(
+    view: PlanView,
+    leg: Leg,
+    n: int,
+    z_root: float,
+    slope: float,
+    height: float,
+    nudge: float,
+) -> int:
+    """How many walls a leg goes through; `MISFIT` if it is reflected where there is no wall.
 
     Parameters
     ----------
@@ -142,20 +165,56 @@ def heights_fit(
         Unfolded height [m] at the root, and its growth over horizontal distance.
     height
         Of the ceiling [m].
+    nudge
+        By how much the leg is taken to be higher [m]; with 0, `TOUCHING` is returned for one that
+        goes through the rim of a wall.
     """
+    through = 0
     for k in range(n):
         kind = leg.marks[k, KIND]
         if kind == REFLECT_WALL:
             continue
-        z = folded(z_root + slope * leg.items[k, DISTANCE], height)
-        if (material_at(view, leg.marks[k, WHAT], z) < 0) != (kind == PASS_PARTIAL):
-            return False
-    return True
+        if kind == PASS_WALL:
+            through += 1
+            continue
+        z = folded(z_root + slope * leg.items[k, DISTANCE] + nudge, height)
+        if nudge == 0.0 and is_at_rim(view, leg.marks[k, WHAT], z):
+            return TOUCHING
+        is_open = material_at(view, leg.marks[k, WHAT], z) < 0
+        if kind == PASS_PARTIAL:
+            through += 0 if is_open else 1
+        elif is_open:
+            return MISFIT
+    return through
+
+
+@jit(inline=True)
+def is_at_rim(view: PlanView, profile: int, z: float) -> bool:
+    """Whether a height is that of a rim of a profile."""
+    near = False
+    for k in range(view.profile_bins[profile], view.profile_bins[profile + 1] - 1):
+        near = near or abs(z - view.bin_top[k]) < TIE_M
+    return near
+
+
+@jit(inline=True)
+def fitting(
+    view: PlanView, leg: Leg, n: int, z_root: float, slope: float, height: float, most_walls: int
+) -> float:
+    """Share of a leg that its heights allow: 1, 0, or one half where it touches a rim."""
+    met = walls_met(view, leg, n, z_root, slope, height, 0.0)
+    if met != TOUCHING:
+        return 1.0 if 0 <= met <= most_walls else 0.0
+    share = 0.0
+    for nudge in (-NUDGE_M, NUDGE_M):
+        if 0 <= walls_met(view, leg, n, z_root, slope, height, nudge) <= most_walls:
+            share += 0.5
+    return share
 
 
 @jit(inline=True)
 def is_constrained(leg: Leg, n: int) -> bool:
-    """Whether a leg meets a partial wall, so that its heights matter."""
+    """Whether a leg meets a partial wall, or goes through one, so that it has to be looked at."""
     met = False
     for k in range(n):
         met = met or leg.marks[k, KIND] != REFLECT_WALL

@@ -10,17 +10,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.kernels.beams import ORDER, Tree
+from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Hits, Tree
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.field import antenna_gain, carried, new_ray, phasor
-from raytrace.kernels.plan_view import Floats, Ints, folded
-from raytrace.kernels.tracing import Record, Sums, Trace, recorded
+from raytrace.kernels.field import arriving_sine, carried, new_ray, phasor, received, sent
+from raytrace.kernels.plan_view import TIE_M, Floats, Ints, folded
+from raytrace.kernels.tracing import Record, Sums, Trace, arrived, recorded, straight_line
 from raytrace.kernels.unfolding import (
+    MISFIT,
+    NUDGE_M,
+    TOUCHING,
     Leg,
-    heights_fit,
     is_constrained,
     most_items,
     unfold,
+    walls_met,
 )
 from raytrace.kernels.utd import (
     COSINE_HALF,
@@ -32,7 +35,7 @@ from raytrace.kernels.utd import (
     Wedge,
     WedgeTerms,
     common_factor,
-    diffraction,
+    diffracted,
     wedge_terms,
 )
 
@@ -65,6 +68,10 @@ class LegsIn(NamedTuple):
     ----------
     order, n_items, length, phi
         (n,) reflections, items, horizontal length [m] and angle from the o-face [rad].
+    share
+        (n,) share at a tie.
+    departure
+        (n, 2) horizontal direction at the source.
     angles
         (n, 6) see `write_angles`.
     items, marks
@@ -75,16 +82,22 @@ class LegsIn(NamedTuple):
     n_items: Ints
     length: Floats
     phi: Floats
+    share: Floats
+    departure: Floats
     angles: Floats
     items: Floats
     marks: Ints
 
 
+ALONG_FACE_RAD = 1e-9
+"""A direction this near to a face of a wedge lies in it."""
+
+
 @jit(inline=True)
 def from_face(azimuth: float, o_face: float) -> float:
     """Angle of a direction from the o-face, 0 to 2 pi."""
-    phi = azimuth - o_face
-    return phi - 2.0 * math.pi * math.floor(phi / (2.0 * math.pi))
+    phi = azimuth - o_face + ALONG_FACE_RAD
+    return phi - 2.0 * math.pi * math.floor(phi / (2.0 * math.pi)) - ALONG_FACE_RAD
 
 
 @jit(inline=True)
@@ -92,22 +105,32 @@ def write_angles(phi: float, n: float, row: Floats) -> None:
     """Functions of an angle from the o-face that the wedge terms are made of."""
     row[COSINE_HALF], row[SINE_HALF] = math.cos(phi / 2.0), math.sin(phi / 2.0)
     row[COSINE_WEDGE], row[SINE_WEDGE] = math.cos(phi / (2.0 * n)), math.sin(phi / (2.0 * n))
-    row[ROOT_O] = math.sqrt(abs(math.sin(phi)))
-    row[ROOT_N] = math.sqrt(abs(math.sin(n * math.pi - phi)))
+    row[ROOT_O] = root_of_sine(phi)
+    row[ROOT_N] = root_of_sine(n * math.pi - phi)
+
+
+@jit(inline=True)
+def root_of_sine(phi: float) -> float:
+    """sqrt(|sin phi|), 0 along a face, where the root of a rounding error would be large."""
+    size = abs(math.sin(phi))
+    return math.sqrt(size) if size > 1e-12 else 0.0
 
 
 @jit()
-def legs_to_edge(trace: Trace, tree: Tree, beams: NDArray[np.int32], edge: Edge) -> LegsIn:
+def legs_to_edge(
+    trace: Trace, tree: Tree, beams: NDArray[np.int32], share: Floats, edge: Edge
+) -> LegsIn:
     """Unfold the legs from the source to an edge.
 
     Parameters
     ----------
     trace, tree
         The trace and the beams from the source.
-    beams
-        (n,) beams that light the edge, by rising order.
+    beams, share
+        (n,) beams that light the edge, by rising order, and shares at a tie.
     edge
-        The edge; legs that arrive within its wall are left out.
+        The edge; legs that arrive within its wall or along a face are left out: a face reflects
+        a grazing ray with -1, so that nothing is left.
     """
     n_beams, most = len(beams), most_items(tree.link)
     legs = LegsIn(
@@ -115,20 +138,24 @@ def legs_to_edge(trace: Trace, tree: Tree, beams: NDArray[np.int32], edge: Edge)
         np.empty(n_beams, np.int64),
         np.empty(n_beams),
         np.empty(n_beams),
+        np.empty(n_beams),
+        np.empty((n_beams, 2)),
         np.empty((n_beams, 6)),
         np.empty((n_beams, most, 5)),
         np.empty((n_beams, most, 2), np.int64),
     )
     kept = 0
-    for i in beams:
+    for b in range(n_beams):
+        i = beams[b]
         azimuth = math.atan2(tree.beam[i, 1] - edge.y, tree.beam[i, 0] - edge.x)
         phi = from_face(azimuth, edge.o_face)
-        if phi > edge.wedge.n * math.pi + 1e-12:
+        if not ALONG_FACE_RAD < phi < edge.wedge.n * math.pi - ALONG_FACE_RAD:
             continue
         leg = Leg(legs.items[kept], legs.marks[kept])
-        n, length, _, _ = unfold(trace.plan, tree.link, tree.beam, i, (edge.x, edge.y), leg)
+        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (edge.x, edge.y), leg)
+        legs.departure[kept, 0], legs.departure[kept, 1] = ux, uy
         legs.order[kept], legs.n_items[kept] = tree.link[i, ORDER], n
-        legs.length[kept], legs.phi[kept] = length, phi
+        legs.length[kept], legs.phi[kept], legs.share[kept] = length, phi, share[b]
         write_angles(phi, edge.wedge.n, legs.angles[kept])
         kept += 1
     return LegsIn(
@@ -136,6 +163,8 @@ def legs_to_edge(trace: Trace, tree: Tree, beams: NDArray[np.int32], edge: Edge)
         legs.n_items[:kept],
         legs.length[:kept],
         legs.phi[:kept],
+        legs.share[:kept],
+        legs.departure[:kept],
         legs.angles[:kept],
         legs.items[:kept],
         legs.marks[:kept],
@@ -153,6 +182,8 @@ class Pair(NamedTuple):
         The leg from the edge.
     terms
         The two directions at the wedge.
+    departure, arriving
+        Horizontal directions in which it leaves the source, and which it comes from.
     """
 
     leg_in: Leg
@@ -162,25 +193,52 @@ class Pair(NamedTuple):
     n_out: int
     length_out: float
     terms: WedgeTerms
+    departure: tuple[float, float]
+    arriving: tuple[float, float]
 
 
 @jit(inline=True)
-def pair_fits(trace: Trace, edge: Edge, pair: Pair, slope: float) -> bool:
-    """Whether the edge stands where the path meets it, and the walls fit the path's heights."""
-    height = trace.radio.height
-    z_root = trace.source[2]
+def pair_met(trace: Trace, edge: Edge, pair: Pair, slope: float, nudge: float) -> int:
+    """How many walls a path goes through; `MISFIT` or `TOUCHING` as for `unfolding.walls_met`."""
+    height, z_root = trace.radio.height, trace.source[2]
     z = z_root + slope * pair.length_in
-    z_edge = folded(z, height)
-    fits = edge.z_low < z_edge < edge.z_high
-    if fits and is_constrained(pair.leg_in, pair.n_in):
-        fits = heights_fit(trace.plan, pair.leg_in, pair.n_in, z_root, slope, height)
-    if fits and is_constrained(pair.leg_out, pair.n_out):
-        fits = heights_fit(trace.plan, pair.leg_out, pair.n_out, z, slope, height)
-    return fits
+    z_edge = folded(z + nudge, height)
+    if nudge == 0.0 and min(abs(z_edge - edge.z_low), abs(z_edge - edge.z_high)) < TIE_M:
+        return TOUCHING
+    if not edge.z_low < z_edge < edge.z_high:
+        return MISFIT
+    through = 0
+    if is_constrained(pair.leg_in, pair.n_in):
+        through = walls_met(trace.plan, pair.leg_in, pair.n_in, z_root, slope, height, nudge)
+    if through >= 0 and is_constrained(pair.leg_out, pair.n_out):
+        behind = walls_met(trace.plan, pair.leg_out, pair.n_out, z, slope, height, nudge)
+        through = through + behind if behind >= 0 else behind
+    return through
+
+
+@jit(inline=True)
+def pair_fitting(trace: Trace, edge: Edge, pair: Pair, slope: float) -> float:
+    """Share of a path that edge and walls allow at its heights (see `unfolding.fitting`)."""
+    met = pair_met(trace, edge, pair, slope, 0.0)
+    if met != TOUCHING:
+        return 1.0 if 0 <= met <= trace.max_walls else 0.0
+    share = 0.0
+    for nudge in (-NUDGE_M, NUDGE_M):
+        if 0 <= pair_met(trace, edge, pair, slope, nudge) <= trace.max_walls:
+            share += 0.5
+    return share
+
+
+@jit(inner=True)
+def shines(trace: Trace, edge: Edge, pair: Pair, slope: float) -> bool:
+    """Whether a path may go through one wall more."""
+    return 0 <= pair_met(trace, edge, pair, slope, NUDGE_M) < trace.max_walls
 
 
 @jit(inline=True, fast=True)
-def pair_gain(trace: Trace, edge: Edge, pair: Pair, slope: float, bounces: int) -> complex:
+def pair_gain(
+    trace: Trace, edge: Edge, pair: Pair, slope: float, bounces: int, shines_through: bool
+) -> complex:
     """Gain of a path, without the wedge's common factor (docs/theory.md, eqs. 16-20).
 
     With every length its horizontal part over cos_el, and sin beta = cos_el, the spreading factor
@@ -192,20 +250,28 @@ def pair_gain(trace: Trace, edge: Edge, pair: Pair, slope: float, bounces: int) 
     z_root = trace.source[2]
     ray = new_ray(radio, slope, bounces)
     root = math.sqrt(ray.cos_el)
-    field = (1.0 + 0j, 0j, 0)
+    upright, level = sent(radio, pair.departure, ray.sin_el)
     upright, level, done = carried(
-        plan, radio, pair.leg_in, pair.n_in, pair.length_in, ray, z_root, field
+        plan, radio, pair.leg_in, pair.n_in, pair.length_in, ray, z_root, (upright, level, 0)
     )
     spread = math.sqrt(4.0 * math.pi / radio.wavelength * product / total) * root
-    soft, hard = diffraction(radio, edge.wedge, pair.terms, spread, ray.cos_el)
+    rising = -ray.sin_el if done & 1 else ray.sin_el
+    upright, level = diffracted(
+        radio,
+        edge.wedge,
+        pair.terms,
+        spread,
+        (ray.cos_el, rising),
+        (upright, level),
+        shines_through,
+    )
     z_edge = z_root + slope * pair.length_in
-    field = (upright * soft, level * hard, done)
     upright, level, done = carried(
-        plan, radio, pair.leg_out, pair.n_out, pair.length_out, ray, z_edge, field
+        plan, radio, pair.leg_out, pair.n_out, pair.length_out, ray, z_edge, (upright, level, done)
     )
     size = radio.wavelength / (4.0 * math.pi * math.sqrt(product * total))
-    size *= root * antenna_gain(radio, ray, done)
-    return upright * size * phasor(radio.cis, total / (ray.cos_el * radio.wavelength))
+    gain = received(radio, (upright, level), pair.arriving, arriving_sine(ray, done))
+    return gain * (size * root) * phasor(radio.cis, total / (ray.cos_el * radio.wavelength))
 
 
 @jit(fast=True, allocates=False)
@@ -214,12 +280,12 @@ def sum_upright_edge(
     edge: Edge,
     legs_in: LegsIn,
     tree: Tree,
-    hits: NDArray[np.int32],
+    hits: Hits,
     work: tuple[Leg, Floats],
     sums: Sums,
     record: Record,
 ) -> None:
-    """Add the paths that one edge diffracts.
+    """Add the paths that one edge diffracts; at the edge itself it has no field.
 
     Parameters
     ----------
@@ -228,7 +294,7 @@ def sum_upright_edge(
     legs_in
         Legs from the source.
     tree, hits
-        Beams from the edge, and the receivers they light (n, 2).
+        Beams from the edge, and the receivers they light.
     work
         Room for the longest leg and for six functions of an angle.
     sums, record
@@ -236,31 +302,39 @@ def sum_upright_edge(
     """
     leg, angles = work
     common = common_factor(edge.wedge.n, trace.radio.wavelength)
-    for hit in range(len(hits)):
-        r, i = hits[hit, 0], hits[hit, 1]
-        target = (trace.receivers[r, 0], trace.receivers[r, 1])
-        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, target, leg)
+    for hit in range(len(hits.pair)):
+        r, i = hits.pair[hit, 0], hits.pair[hit, 1]
+        x, y = trace.receivers[r, 0], trace.receivers[r, 1]
+        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (x, y), leg)
+        arriving = (tree.beam[i, IMAGE_X] - x) / length, (tree.beam[i, IMAGE_Y] - y) / length
+        if length < TIE_M:
+            continue
         phi = from_face(math.atan2(uy, ux), edge.o_face)
         write_angles(phi, edge.wedge.n, angles)
-        field, power = 0j, 0.0
+        straight = straight_line(trace, r)
+        tie = 0.5 * TIE_M / length
         for p in range(len(legs_in.order)):
             order = tree.link[i, ORDER] + legs_in.order[p]
             if order > trace.max_order:
                 break
             leg_in = Leg(legs_in.items[p], legs_in.marks[p])
-            length_in = legs_in.length[p]
-            terms = wedge_terms(edge.wedge, phi, angles, legs_in.phi[p], legs_in.angles[p])
-            pair = Pair(leg_in, legs_in.n_items[p], length_in, leg, n, length, terms)
+            total = legs_in.length[p] + length
+            terms = wedge_terms(edge.wedge, phi, angles, legs_in.phi[p], legs_in.angles[p], tie)
+            departure = legs_in.departure[p, 0], legs_in.departure[p, 1]
+            pair = Pair(
+                leg_in, legs_in.n_items[p], legs_in.length[p], leg, n, length, terms, departure,
+                arriving,
+            )  # fmt: skip
+            share_here = legs_in.share[p] * hits.share[hit]
             for k in range(2 * (trace.max_order - order) + 1):
                 rise = trace.image_z[trace.level[r], k] - trace.source[2]
-                slope = rise / (length_in + length)
-                if not pair_fits(trace, edge, pair, slope):
+                slope = rise / total
+                share = share_here * pair_fitting(trace, edge, pair, slope)
+                if share == 0.0:
                     continue
                 bounces = trace.image_bounces[k]
-                gain = pair_gain(trace, edge, pair, slope, bounces)
-                field += gain
-                power += gain.real * gain.real + gain.imag * gain.imag
-                sums.n_paths[r, order + bounces] += 1
-                recorded(record, hit, p, (-1, k), gain * common)
-        sums.field[r] += field * common
-        sums.power[r] += power * (common.real * common.real + common.imag * common.imag)
+                through = trace.max_walls > 0 and shines(trace, edge, pair, slope)
+                gain = pair_gain(trace, edge, pair, slope, bounces, through) * common
+                detour = math.sqrt(total * total + rise * rise) - straight
+                arrived(sums, r, order + bounces, (gain, detour, share), arriving)
+                recorded(record, hit, p, (-1, k), gain, share)

@@ -1,16 +1,16 @@
 """Diffraction at a wedge: the uniform theory of Kouyoumjian and Pathak (1974), for slabs.
 
 The coefficient's four cotangent terms (their eqs. 25-33) keep the perfect conductor's form; the two
-that belong to reflections are multiplied by the slab's reflection coefficient, after Luebbers
-(1984), at the angle whose sine to the face is sqrt(|sin phi sin phi'|), which unlike his is
-the same in both directions of the path (docs/theory.md, eq. 21).
+that belong to reflections are multiplied by the slab's reflection dyad, after Luebbers (1984), at
+the angle whose sine to the face is sqrt(|sin phi sin phi'|), which unlike his is the same in
+both directions of the path (docs/theory.md, eqs. 21-21b).
 """
 
 import math
 from typing import NamedTuple
 
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.field import Radio, both_reflections
+from raytrace.kernels.field import Radio, both_reflections, slab_lookup
 from raytrace.kernels.plan_view import Floats
 
 TRANSITION_MAX = 12.0
@@ -58,18 +58,23 @@ class WedgeTerms(NamedTuple):
     cotangent, detour
         Of the four terms: their cotangents and the |cos| of their transition angles. Terms 0 and 1
         belong to phi - phi', 2 (n-face) and 3 (o-face) to phi + phi'.
-    cos_minus, cos_plus
+    cos_minus, cos_plus, sin_plus
         Of (phi - phi') / 2 and (phi + phi') / 2, all that a sheet needs.
     o_cosine, n_cosine
         Cosine of incidence on either face, over sin beta.
+    o_turn, n_turn
+        How the plane of incidence on either face turns with the slant of the ray (eq. 21a).
     """
 
     cotangent: tuple[float, float, float, float]
     detour: tuple[float, float, float, float]
     cos_minus: float
     cos_plus: float
+    sin_plus: float
     o_cosine: float
     n_cosine: float
+    o_turn: float
+    n_turn: float
 
 
 @jit()
@@ -121,9 +126,15 @@ def detour(wedge: Wedge, beta: float, cos_half: float, sin_half: float, sign: fl
     return abs(cos_half)
 
 
+@jit(inline=True)
+def off_tie(size: float, tie: float) -> float:
+    """0 in place of what is so small that the ray is on a shadow boundary."""
+    return 0.0 if abs(size) < tie else size
+
+
 @jit(inline=True, fast=True)
 def wedge_terms(
-    wedge: Wedge, phi: float, at: Floats, phi_source: float, source: Floats
+    wedge: Wedge, phi: float, at: Floats, phi_source: float, source: Floats, tie: float
 ) -> WedgeTerms:
     """Terms of one pair of directions.
 
@@ -135,20 +146,29 @@ def wedge_terms(
         Angles of the diffracted and of the incident ray from the o-face [rad].
     at, source
         (6,) their `wedge_angles`.
+    tie
+        Half the angle to a shadow boundary [rad] below which the ray is on it.
     """
     ch, sh, gh, fh = at[COSINE_HALF], at[SINE_HALF], source[COSINE_HALF], source[SINE_HALF]
     cos_minus, sin_minus = ch * gh + sh * fh, sh * gh - ch * fh
     cos_plus, sin_plus = ch * gh - sh * fh, sh * gh + ch * fh
+    cos_minus, cos_plus = off_tie(cos_minus, tie), off_tie(cos_plus, tie)
     o_cosine, n_cosine = at[ROOT_O] * source[ROOT_O], at[ROOT_N] * source[ROOT_N]
+    # halves of cos phi' - cos phi and of sin phi' - sin phi
+    cos_step, sin_step = gh * gh - ch * ch, fh * gh - sh * ch
+    o_turn = o_cosine * cos_step
+    n_turn = -n_cosine * (wedge.cos_whole * cos_step + wedge.sin_whole * sin_step)
     if wedge.is_sheet:
         none = (0.0, 0.0, 0.0, 0.0)
-        return WedgeTerms(none, none, cos_minus, cos_plus, o_cosine, n_cosine)
+        return WedgeTerms(
+            none, none, cos_minus, cos_plus, sin_plus, o_cosine, n_cosine, o_turn, n_turn
+        )
     minus, plus = phi - phi_source, phi + phi_source
     detours = (
-        detour(wedge, minus, cos_minus, sin_minus, 1.0),
-        detour(wedge, minus, cos_minus, sin_minus, -1.0),
-        detour(wedge, plus, cos_plus, sin_plus, 1.0),
-        detour(wedge, plus, cos_plus, sin_plus, -1.0),
+        off_tie(detour(wedge, minus, cos_minus, sin_minus, 1.0), tie),
+        off_tie(detour(wedge, minus, cos_minus, sin_minus, -1.0), tie),
+        off_tie(detour(wedge, plus, cos_plus, sin_plus, 1.0), tie),
+        off_tie(detour(wedge, plus, cos_plus, sin_plus, -1.0), tie),
     )
     sp, cp = wedge.sin_part, wedge.cos_part
     ch, sh, gh, fh = at[COSINE_WEDGE], at[SINE_WEDGE], source[COSINE_WEDGE], source[SINE_WEDGE]
@@ -160,14 +180,48 @@ def wedge_terms(
         cotangent(sp * cos_n_plus + cp * sin_n_plus, cp * cos_n_plus - sp * sin_n_plus),
         cotangent(sp * cos_n_plus - cp * sin_n_plus, cp * cos_n_plus + sp * sin_n_plus),
     )
-    return WedgeTerms(cotangents, detours, cos_minus, cos_plus, o_cosine, n_cosine)
+    return WedgeTerms(
+        cotangents, detours, cos_minus, cos_plus, sin_plus, o_cosine, n_cosine, o_turn, n_turn
+    )
 
 
 @jit(inline=True, fast=True)
-def diffraction(
-    radio: Radio, wedge: Wedge, terms: WedgeTerms, spread: float, sin_beta: float
+def face_dyad(
+    slabs: Floats, slab: int, cosine: float, turn: float, beta: tuple[float, float]
+) -> tuple[complex, complex, complex]:
+    """Reflection of a face in the edge's polarisations: along to along, mixed, across to across.
+
+    The plane of incidence is turned against the edge by an angle whose cosine and sine are as
+    1 - cosine^2 to cos_beta turn (docs/theory.md, eqs. 21a-21b).
+
+    Parameters
+    ----------
+    slabs, slab
+        The tables, and the face's.
+    cosine, turn
+        Of the face, see `WedgeTerms`.
+    beta
+        Sine and cosine of the angle between ray and edge.
+    """
+    tm, te = both_reflections(slabs, slab, min(cosine * beta[0], 1.0))
+    straight, slant = 1.0 - cosine * cosine, beta[1] * turn
+    share = slant / (straight * straight + slant * slant + 1e-30)
+    both = te + tm
+    turned = share * slant * both
+    return te - turned, share * straight * both, tm - turned
+
+
+@jit(inline=True, fast=True)
+def diffracted(
+    radio: Radio,
+    wedge: Wedge,
+    terms: WedgeTerms,
+    spread: float,
+    beta: tuple[float, float],
+    field: tuple[complex, complex],
+    shines_through: bool,
 ) -> tuple[complex, complex]:
-    """Soft and hard coefficient, without their common factor (see `common_factor`).
+    """Field behind a wedge, without its common factor (see `common_factor`).
 
     Parameters
     ----------
@@ -175,22 +229,65 @@ def diffraction(
         Tables, the wedge's faces, and the pair of directions.
     spread
         sqrt(2 k L), L the distance parameter [1].
-    sin_beta
-        Sine of the angle between ray and edge.
+    beta
+        Sine and cosine of the angle of the diffracted ray with the edge, about which the free
+        space lies counter-clockwise of the o-face.
+    field
+        Components of the arriving field along the edge and across it.
+    shines_through
+        Whether there are also paths that go on through a sheet, so that its shadow holds what it
+        lets through.
     """
-    table = radio.transition
-    o_tm, o_te = both_reflections(radio.slabs, wedge.o_slab, min(terms.o_cosine * sin_beta, 1.0))
+    table, (along, across) = radio.transition, field
+    te, mixed, tm = face_dyad(radio.slabs, wedge.o_slab, terms.o_cosine, terms.o_turn, beta)
     if wedge.is_sheet:
-        # cot((pi + b) / 4) + cot((pi - b) / 4) = 2 / cos(b / 2): two terms in one, not singular
+        # cot((pi + b) / 4) + cot((pi - b) / 4) = 2 / cos(b / 2): two terms in one, not singular;
+        # the mixed parts of the two faces have opposite signs, and the terms' difference is
+        # sin(b / 2) times their sum
         incident = half_plane_term(table, spread, terms.cos_minus)
         reflected = half_plane_term(table, spread, terms.cos_plus)
-        return incident + o_te * reflected, incident + o_tm * reflected
-    n_tm, n_te = both_reflections(radio.slabs, wedge.n_slab, min(terms.n_cosine * sin_beta, 1.0))
-    incident = wedge_term(table, spread, terms.cotangent[0], terms.detour[0])
-    incident += wedge_term(table, spread, terms.cotangent[1], terms.detour[1])
-    at_n = wedge_term(table, spread, terms.cotangent[2], terms.detour[2])
-    at_o = wedge_term(table, spread, terms.cotangent[3], terms.detour[3])
-    return incident + n_te * at_n + o_te * at_o, incident + n_tm * at_n + o_tm * at_o
+        mixed *= reflected * terms.sin_plus
+        te, tm = te * reflected, tm * reflected
+        if shines_through:
+            along, across = kept_back(radio.through, wedge, terms, beta, field)
+            along, across = incident * along, incident * across
+            return (
+                along + te * field[0] + mixed * field[1],
+                across + tm * field[1] - mixed * field[0],
+            )
+    else:
+        at_n = wedge_term(table, spread, terms.cotangent[2], terms.detour[2])
+        at_o = wedge_term(table, spread, terms.cotangent[3], terms.detour[3])
+        incident = wedge_term(table, spread, terms.cotangent[0], terms.detour[0])
+        incident += wedge_term(table, spread, terms.cotangent[1], terms.detour[1])
+        n_te, n_mixed, n_tm = face_dyad(
+            radio.slabs, wedge.n_slab, terms.n_cosine, terms.n_turn, beta
+        )
+        te, mixed, tm = (
+            te * at_o + n_te * at_n, mixed * at_o + n_mixed * at_n, tm * at_o + n_tm * at_n
+        )  # fmt: skip
+    return (incident + te) * along + mixed * across, (incident + tm) * across - mixed * along
+
+
+@jit(inner=True, fast=True)
+def kept_back(
+    through: Floats,
+    wedge: Wedge,
+    terms: WedgeTerms,
+    beta: tuple[float, float],
+    field: tuple[complex, complex],
+) -> tuple[complex, complex]:
+    """Field less what a sheet lets through, along its edge and across it."""
+    along, across = field
+    cosine = min(terms.o_cosine * beta[0], 1.0)
+    tm, mix = slab_lookup(through, wedge.o_slab, cosine)
+    difference = mix * (1.0 - cosine * cosine)
+    straight, slant = 1.0 - terms.o_cosine * terms.o_cosine, beta[1] * terms.o_turn
+    size = straight * straight + slant * slant + 1e-30
+    turned, mixed = difference * (slant * slant / size), difference * (straight * slant / size)
+    through_along = (tm + difference - turned) * along + mixed * across
+    through_across = (tm + turned) * across + mixed * along
+    return along - through_along, across - through_across
 
 
 @jit(inline=True, fast=True)
@@ -202,7 +299,9 @@ def wedge_term(table: Floats, spread: float, cot: float, bend: float) -> complex
 
 @jit(inline=True, fast=True)
 def half_plane_term(table: Floats, spread: float, cosine: float) -> complex:
-    """2 F / cosine, two of the four terms of a half plane."""
+    """2 F / cosine, two of the four terms of a half plane; 0, its mean, on a shadow boundary."""
+    if cosine == 0.0:
+        return 0j
     return transition_ratio(table, spread * abs(cosine)) * math.copysign(2.0 * spread, cosine)
 
 

@@ -43,6 +43,12 @@ Diffractions = Annotated[
     int,
     typer.Option("--diffractions", metavar="N", min=0, max=1, help="Most diffractions on a path."),
 ]
+Transmissions = Annotated[
+    int,
+    typer.Option(
+        "--transmissions", metavar="N", min=0, max=20, help="Most walls that a path goes through."
+    ),
+]
 Frequency = Annotated[
     float,
     typer.Option("--frequency", metavar="GHZ", min=0.001, help="Carrier frequency in GHz."),

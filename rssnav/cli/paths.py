@@ -23,6 +23,7 @@ from rssnav.cli.options import (
     Plan,
     Reflections,
     Style,
+    Transmissions,
     check_suffix,
     examples,
 )
@@ -91,6 +92,7 @@ def show_paths(
     ] = None,
     reflections: Reflections = TraceConfig.max_reflections,
     diffractions: Diffractions = TraceConfig.max_diffractions,
+    transmissions: Transmissions = TraceConfig.max_transmissions,
     edition: Edition = None,
     style: Style = None,
     as_json: Json = False,
@@ -98,14 +100,15 @@ def show_paths(
 ) -> None:
     """Trace every path from a plan's source to a receiver and print the strongest.
 
-    Interactions are written in their order: R a reflection, D a diffraction, LOS none.
+    Interactions are written in their order: R a reflection, D a diffraction, T a
+    transmission, LOS none.
     """
     if as_json and as_csv:
         raise typer.BadParameter("give it or --json, not both.", param_hint="--csv")
     check_suffix(picture, DRAWING_SUFFIXES, "--picture")
     loaded = floorplans.load(plan)
     _check_inside(loaded, plan, to)
-    paths = _trace(loaded, plan, to, TraceConfig(reflections, diffractions), edition)
+    paths = _trace(loaded, plan, to, TraceConfig(reflections, diffractions, transmissions), edition)
     chosen = _chosen(paths, only, top)
     if picture is not None:
         _draw(loaded, chosen, only, picture, style)

@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from buildings import Building, Sheet, box, wall
-from comparing import placed
 from numpy.typing import NDArray
 
 from raytrace import Isotropic, TraceConfig, Transmitter, trace_paths
@@ -121,7 +120,7 @@ def test_upright_edges_are_soft(name: str, azimuth_deg: float) -> None:
     around = np.cos(angle)[:, None] * SOUTH + np.sin(angle)[:, None] * EAST
     receivers = EDGE + np.linspace(4.0, 12.0, 40)[:, None] * around
     exact = wedge_field(
-        n, polar(placed(tuple(source))[None], SOUTH, EAST), polar(receivers, SOUTH, EAST), SOFT
+        n, polar(source[None], SOUTH, EAST), polar(receivers, SOUTH, EAST), SOFT
     )
     error = np.abs(traced_field(building, source, receivers) - exact)
     assert (error < UNIFORM / 9.0).all()
@@ -132,9 +131,9 @@ def test_a_lintel_is_hard_across() -> None:
     building = hall(*wall((20.0, 0.0), (20.0, 40.0), slab=CONDUCTOR, low=LEVEL_M, high=HEIGHT_M))
     source = np.array([12.0, 20.0, 3.0])
     z = np.linspace(0.5, 11.5, 40)
-    receivers = np.column_stack([np.full(40, 27.0), np.full(40, placed(tuple(source))[1]), z])
+    receivers = np.column_stack([np.full(40, 27.0), np.full(40, source[1]), z])
     exact = wedge_field(
-        2.0, polar(placed(tuple(source))[None], UP, WEST), polar(receivers, UP, WEST), HARD
+        2.0, polar(source[None], UP, WEST), polar(receivers, UP, WEST), HARD
     )
     error = np.abs(traced_field(building, source, receivers) - exact)
     assert (error < UNIFORM / 8.0).all()

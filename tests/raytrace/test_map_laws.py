@@ -19,7 +19,6 @@ from raytrace import (
     compute_radio_map,
     trace_paths,
 )
-from raytrace.preparing import TIE_OFFSET_M
 
 Floats = NDArray[np.float64]
 
@@ -104,10 +103,9 @@ def same_maps(one: RadioMap, other: RadioMap) -> bool:
     ids=["moved", "turned", "turned twice and moved", "mirrored"],
 )
 def test_paths_move_with_the_building(matrix: Floats, shift: Floats) -> None:
-    """Sources and receivers lie off every tie; the tie offset is undone, so nothing else moves."""
+    """Sources and receivers lie off every tie."""
     receivers = OFFICE.random_points(5, seed=42)
-    offset = np.array(TIE_OFFSET_M)
-    moved_source = matrix @ (np.array(SOURCE[:2]) + offset) + shift - offset
+    moved_source = matrix @ np.array(SOURCE[:2]) + shift
     moved_receivers = receivers.copy()
     moved_receivers[:, :2] = receivers[:, :2] @ matrix.T + shift
     there = (float(moved_source[0]), float(moved_source[1]), SOURCE[2])
@@ -122,11 +120,10 @@ def test_paths_move_with_the_building(matrix: Floats, shift: Floats) -> None:
 
 def test_a_path_and_its_reverse_have_one_gain() -> None:
     ends = OFFICE.random_points(6, seed=43)
-    offset = np.array([*TIE_OFFSET_M, 0.0])
     for a, b in zip(ends[:3], ends[3:], strict=True):
         limits = TraceConfig(3, 1)
-        forth = traced(OFFICE, tuple(a - offset), b[None], limits)
-        back = traced(OFFICE, tuple(b - offset), a[None], limits)
+        forth = traced(OFFICE, tuple(a), b[None], limits)
+        back = traced(OFFICE, tuple(b), a[None], limits)
         assert len(forth) == len(back) > 100
         order_forth, order_back = np.argsort(forth.length_m), np.argsort(back.length_m)
         np.testing.assert_allclose(
@@ -183,8 +180,7 @@ def test_no_number_is_nan() -> None:
     """Receivers on walls, on corners, on the source, straight above it, and outside."""
     places = [(4.0, 2.5), (0.0, 0.0), (4.0, 1.0), SOURCE[:2], (7.0, 5.0), (-1.0, 2.0)]
     receivers = np.array([(x, y, z) for x, y in places for z in (1.25, 1.5, 2.25)])
-    placed = np.array([[SOURCE[0] + TIE_OFFSET_M[0], SOURCE[1] + TIE_OFFSET_M[1], 2.0]])
-    paths = traced(OFFICE, SOURCE, np.concatenate([receivers, placed]), TraceConfig(2, 1))
+    paths = traced(OFFICE, SOURCE, receivers, TraceConfig(2, 1))
     assert np.isfinite(paths.gain).all()
     assert np.isfinite(paths.vertices).all()
     assert np.isfinite(paths.length_m).all()

@@ -29,7 +29,8 @@ def straight_paths(
     vertices = np.zeros((len(r), 4, 3))
     vertices[:, 0], vertices[:, 1:, 2] = begin, 1.0
     kinds = np.zeros((len(r), 2), np.int8)
-    return Paths(np.array(receiver, np.int64), kinds, vertices, r, np.array(gain, np.complex128))
+    gains = np.array(gain, np.complex128)
+    return Paths(np.array(receiver, np.int64), kinds, vertices, r, gains, np.ones(len(r)))
 
 
 def statistics(paths: Paths, n_receivers: int = 1) -> PathStatistics:

@@ -8,7 +8,7 @@ import os
 
 import numpy as np
 from buildings import Building
-from comparing import as_found, assert_same_paths, check_every_path, standing_at
+from comparing import as_found, assert_same_paths, check_every_path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -64,7 +64,7 @@ def reverse(paths: Paths) -> Paths:
         vertices[k, n + 2 :] = paths.vertices[k, 0]
         kinds[k, :n] = paths.interactions[k, :n][::-1]
         kinds[k, n:] = NOTHING
-    return Paths(paths.receiver, kinds, vertices, paths.length_m, paths.gain)
+    return Paths(paths.receiver, kinds, vertices, paths.length_m, paths.gain, paths.share)
 
 
 @given(seed=seeds, n_walls=n_inside)
@@ -81,7 +81,7 @@ def test_every_path_reversed_is_a_path_of_the_same_gain(seed: int, n_walls: int)
 
 
 def trace(building: Building, source: Floats, receiver: Floats) -> Paths:
-    transmitter = Transmitter(standing_at(source))
+    transmitter = Transmitter((float(source[0]), float(source[1]), float(source[2])))
     return trace_paths(building.scene, transmitter, receiver[None], TraceConfig(3, 1))
 
 

@@ -1,0 +1,59 @@
+"""The layers of a map, out of the sums over all paths."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raytrace.constants import SPEED_OF_LIGHT
+from raytrace.kernels.tracing import COSINE, DETOUR, DETOUR_SQUARED, SINE, STRONGEST, Sums
+
+Floats = NDArray[np.float64]
+
+
+def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDArray[Any]]:
+    """Layers of a map, by the names of `RadioMap`, of n receivers.
+
+    Parameters
+    ----------
+    sums
+        Over all paths.
+    straight_m
+        (n,) straight from the source to each receiver [m].
+    power_dbm
+        Transmit power [dBm].
+    """
+    power, moments = sums.power, sums.moments
+    n_paths = sums.n_paths.sum(axis=1)
+    reached = power > 0.0
+    mean = moments / np.where(reached, power, 1.0)[:, None]
+    variance = np.maximum(mean[:, DETOUR_SQUARED] - mean[:, DETOUR] ** 2, 0.0)
+    focus = mean[:, COSINE] ** 2 + mean[:, SINE] ** 2
+    strongest = moments[:, STRONGEST]
+    rest = np.where(n_paths > 1.0, np.maximum(power - strongest, 0.0), 0.0)
+    return {
+        "rss_dbm": _dbm(power, power_dbm),
+        "rss_coherent_dbm": _dbm(np.where(reached, np.abs(sums.field) ** 2, 0.0), power_dbm),
+        "path_count": np.floor(n_paths + 0.5).astype(np.int64),
+        "strongest_path_dbm": _dbm(strongest, power_dbm),
+        "mean_delay_s": np.where(reached, straight_m + mean[:, DETOUR], 0.0) / SPEED_OF_LIGHT,
+        "delay_spread_s": np.where(reached, np.sqrt(variance), 0.0) / SPEED_OF_LIGHT,
+        "angular_spread": np.where(reached, np.sqrt(np.maximum(1.0 - focus, 0.0)), 0.0),
+        "k_factor_db": _ratio_db(strongest, rest),
+    }
+
+
+def _dbm(power: Floats, power_dbm: float) -> Floats:
+    """Received power [dBm] of a power gain; -inf for none."""
+    dbm = np.full(len(power), -np.inf)
+    some = power > 0.0
+    dbm[some] = power_dbm + 10.0 * np.log10(power[some])
+    return dbm
+
+
+def _ratio_db(strongest: Floats, rest: Floats) -> Floats:
+    """Strongest path over the rest [dB]: inf for a single path, -inf for none."""
+    ratio = np.where(strongest > 0.0, np.inf, -np.inf)
+    some = (strongest > 0.0) & (rest > 0.0)
+    ratio[some] = 10.0 * np.log10(strongest[some] / rest[some])
+    return ratio
