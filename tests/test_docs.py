@@ -11,6 +11,7 @@ from types import ModuleType
 import matplotlib.pyplot as plt
 import pytest
 from documents import PAGES, ROOT, Block, anchors, blocks, links
+from matplotlib.animation import Animation
 from typer.testing import CliRunner
 
 from rssnav.cli import app
@@ -84,7 +85,11 @@ def test_an_example_of_the_gallery_runs(
     monkeypatch.chdir(tmp_path)
     with plt.rc_context():
         text = example.read_text("utf-8")
-        exec(compile(text, example.name, "exec"), {"__name__": "__main__"})
+        names: dict[str, object] = {"__name__": "__main__"}
+        exec(compile(text, example.name, "exec"), names)
+        for film in names.values():
+            if isinstance(film, Animation):
+                assert "<img" in film.to_jshtml()
         assert plt.get_fignums()
     plt.close("all")
     assert ast.get_docstring(ast.parse(text))

@@ -19,7 +19,7 @@ plt.rcParams.update(STYLE)
 plan = floorplans.load("flat")
 
 # %%
-# Half a metre a cell, 2 m above the floor; `make_map` returns a map, and keeps it in a file where
+# Half a metre a cell, 2 m above the floor; ``make_map`` returns a map, and keeps it in a file where
 # one is given.
 limits = {
     "line of sight": TraceConfig(0, 0),

@@ -18,12 +18,12 @@ plt.rcParams.update(STYLE)
 
 plan = floorplans.load("flat")
 world = rssnav.GridWorld.from_map(plan, make_map(plan))
-threshold_db = np.array([0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0])
-RUNS = 24
+threshold_db = np.array([0.02, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0])
+RUNS = 16
 
 # %%
 # A tolerance of Th dB: a reading nearer than that to a known state is that state. Each point is
-# 24 independent trainings of 500 episodes, cut at 300 steps.
+# 16 independent trainings of 500 episodes, cut at 300 steps.
 learning = rssnav.QLearning(max_steps=300)
 figure, (left, right) = plt.subplots(1, 2, figsize=(PAGE_IN, 2.3), layout="constrained")
 for sigma_db, lightness in ((0.0, -0.4), (0.1, 0.0), (0.5, 0.5)):

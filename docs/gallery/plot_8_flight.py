@@ -19,19 +19,22 @@ from rssnav.maps import make_map
 plan = floorplans.load("scenario2")
 radio_map = make_map(plan, config=TraceConfig(max_reflections=3, max_diffractions=1))
 world = rssnav.GridWorld.from_map(plan, radio_map, speed=4)
-result = rssnav.train(world, rssnav.LocationAgent(), runs=1, episodes=20_000, until_converged=True)
+agent = rssnav.LocationAgent()
+result = rssnav.train(world, agent, runs=1, episodes=20_000, until_converged=True)
 
 flight = Flight.of(result)
 print(flight.label)
 
 # %%
-# `FlightScene` draws one picture a step; `rssnav.flight_movie.save_flight_movie` writes them into
+# ``FlightScene`` draws one picture a step; ``save_flight_movie`` writes them into
 # a file.
 with drawing():
     scene = FlightScene(plan, radio_map, [flight])
 first = scene.frame(0)
 screen = plt.figure(figsize=(first.shape[1] / 100, first.shape[0] / 100), dpi=100)
-image = screen.figimage(first)
+ax = screen.add_axes((0.0, 0.0, 1.0, 1.0))
+ax.axis("off")
+image = ax.imshow(first)
 
 
 def show(step: int) -> None:
