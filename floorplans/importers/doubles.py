@@ -1,4 +1,4 @@
-"""Thin walls that the jags of a thick wall's face leave beside it."""
+"""Thin walls that are not there: what the jags of other walls' faces leave."""
 
 from __future__ import annotations
 
@@ -7,21 +7,25 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 from shapely.geometry import LineString
+from shapely.geometry.base import BaseGeometry
 
 from floorplans.importers.draft import RawWall
 
 _BESIDE_M = 0.1
 _SHARE = 0.7
 _RATIO = 3.0
+_THIN_M = 0.06
 
 
-def without_doubles(walls: Sequence[RawWall]) -> list[RawWall]:
+def without_doubles(walls: Sequence[RawWall], area: BaseGeometry) -> list[RawWall]:
     """Leave out walls that run within, or just beside, the body of one that is much thicker.
 
     Parameters
     ----------
     walls : sequence of RawWall
         All of known thickness.
+    area : shapely geometry
+        Of all walls: a thin wall that is not as thick as its area is left out too [m].
 
     Returns
     -------
@@ -43,4 +47,16 @@ def without_doubles(walls: Sequence[RawWall]) -> list[RawWall]:
         if _RATIO * thickness_m[i] < thickness_m[j]
         and lines[i].intersection(bodies[j]).length > _SHARE * lines[i].length
     }
-    return [wall for i, wall in enumerate(walls) if i not in doubles]
+    return [
+        wall
+        for i, wall in enumerate(walls)
+        if i not in doubles and (thickness_m[i] >= _THIN_M or _fits(lines[i], thickness_m[i], area))
+    ]
+
+
+def _fits(line: LineString, thickness_m: float, area: BaseGeometry) -> bool:
+    """Whether there is area all along a wall as wide as its thickness, and not much wider."""
+    body = line.buffer(thickness_m / 2, cap_style="flat")
+    wide = line.buffer(thickness_m, cap_style="flat")
+    solid = body.intersection(area).area / body.area
+    return bool(solid > _SHARE and wide.intersection(area).area < _SHARE * wide.area)

@@ -52,6 +52,7 @@ _IN_WALL_M = 0.05
 _AT_FACE_M = 0.12
 _CROSSING_M = 1.0
 _MIN_SINGLE_M = 0.3
+_STRAY_PERCENT = (0.5, 99.5)
 
 _INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 14: "dm"}
 
@@ -127,10 +128,10 @@ def _unit(document: Document, options: ImportOptions) -> tuple[str, str]:
 
 
 def _size(content: Content, layers: Layers) -> tuple[float, float]:
-    """Width and depth of all walls, in the drawing's unit."""
+    """Width and depth of the walls, in the drawing's unit, but for points that lie astray."""
     curves = [curve for layer in layers.of("wall") for curve in content.curves[layer]]
     points = np.array([point for curve in curves for point in curve.points])
-    width, depth = np.ptp(points, axis=0)
+    width, depth = np.diff(np.percentile(points, _STRAY_PERCENT, axis=0), axis=0)[0]
     return float(width), float(depth)
 
 
@@ -168,7 +169,7 @@ def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[Raw
     openings = as_windows_outside([*openings, *loose], area)
     solid = without_openings(bodies.area, openings)
     walls = walls_of_area(area, _CLOSE_M) if not area.is_empty else []
-    walls = squared(without_doubles(walls))
+    walls = squared(without_doubles(walls, area))
     return [
         *(piece for wall in walls for piece in by_material(wall, solid)),
         *_single_walls(bodies, area),

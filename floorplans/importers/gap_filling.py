@@ -23,6 +23,7 @@ _REBATE_M = 0.06
 _STEP_M = 0.02
 _OVER_M = 0.01
 _MIN_SHARE = 0.5
+_MIN_COMMON = 0.7
 
 
 def fill_gaps(area: BaseGeometry, openings: Sequence[RawOpening]) -> tuple[Polygon, ...]:
@@ -118,13 +119,26 @@ def _run_nearest_middle(flags: NDArray[np.bool_]) -> tuple[int, int] | None:
 def _exact(
     local: BaseGeometry, sides: tuple[float, float], rows: tuple[float, float]
 ) -> tuple[float, float]:
-    """Depth of a gap to the faces' own edges, where the rows found them within a step."""
+    """Depth of a gap: that of its faces' own edges, where the rows found them within a step.
+
+    Faces that are set off from each other have less in common than each is deep; the gap is then
+    as deep as the thinner of them, about the middle of what they share, if that much is free.
+    """
     low, high = rows
+    thinnest_m = np.inf
     for side, beyond in zip(sides, (-1, 1), strict=True):
         x0, x1 = sorted((side + beyond * _OVER_M, side + beyond * 3 * _OVER_M))
-        face = local.intersection(box(x0, low - _STEP_M, x1, high + _STEP_M))
-        if not face.is_empty:
+        strip = local.intersection(box(x0, -_BESIDE_M, x1, _BESIDE_M))
+        for face in shapely.get_parts(strip):
             _, bottom, _, top = face.bounds
-            low = bottom if abs(bottom - low) < _STEP_M and bottom > low - _STEP_M / 2 else low
-            high = top if abs(top - high) < _STEP_M and top < high + _STEP_M / 2 else high
+            if top <= low or bottom >= high:
+                continue
+            thinnest_m = min(thinnest_m, top - bottom)
+            low = bottom if low < bottom < low + _STEP_M else low
+            high = top if high - _STEP_M < top < high else high
+    if np.isfinite(thinnest_m) and high - low < _MIN_COMMON * thinnest_m:
+        middle, half = (low + high) / 2, thinnest_m / 2
+        whole = box(sides[0] + _OVER_M, middle - half, sides[1] - _OVER_M, middle + half)
+        if not local.intersects(whole):
+            return (middle - half, middle + half)
     return low, high
