@@ -79,5 +79,6 @@ def _turn(angle_deg: float) -> NDArray[np.float64]:
 def _transformer(longitude_deg: float, latitude_deg: float) -> Transformer:
     from pyproj import Transformer  # costs a tenth of a second, and few plans need it
 
-    local = f"+proj=aeqd +lon_0={longitude_deg:.17g} +lat_0={latitude_deg:.17g} +ellps=WGS84 +units=m"
+    centre = f"+lon_0={longitude_deg:.17g} +lat_0={latitude_deg:.17g}"
+    local = f"+proj=aeqd {centre} +ellps=WGS84 +units=m"
     return Transformer.from_crs("OGC:CRS84", local, always_xy=True)

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 
-_DECIMALS = 7
-"""Coordinates are kept to 0.1 µm, a tenth of the distance at which points are the same."""
+DECIMALS = 10
+"""Coordinates are kept to 1e-10 m: a wall that ends on an oblique one then ends on it for a tracer
+too, which takes points farther apart than 1e-8 m for two."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +57,8 @@ def at_text(point: Point) -> str:
 
 
 def tidy_point(x: float, y: float) -> Point:
-    """Round a point to 0.1 µm."""
-    return (round(float(x), _DECIMALS) + 0.0, round(float(y), _DECIMALS) + 0.0)
+    """Round a point to 1e-10 m."""
+    return (round(float(x), DECIMALS) + 0.0, round(float(y), DECIMALS) + 0.0)
 
 
 def direction(wall: Wall) -> Point:
@@ -104,7 +105,7 @@ def _moved_openings(part: Wall, bare: Wall) -> Iterable[Opening]:
         if abs(low - opening.offset_m) < TOLERANCE_M and abs(high - opening.end_m) < TOLERANCE_M:
             yield opening
         elif high - low > TOLERANCE_M and 2 * (high - low) >= opening.width_m:
-            low, high = round(low, _DECIMALS), round(high, _DECIMALS)
+            low, high = round(low, DECIMALS), round(high, DECIMALS)
             yield replace(opening, offset_m=low, width_m=high - low)
 
 

@@ -29,7 +29,7 @@ from floorplans.materials import MATERIALS
 from floorplans.plan import FloorPlan
 from floorplans.repair import REACH_M, repair_walls
 from floorplans.repair_lines import merge_lines
-from floorplans.repair_walls import Change, tidy_point
+from floorplans.repair_walls import DECIMALS, Change, tidy_point
 from floorplans.wall_checks import check_positive
 from floorplans.walls import TOLERANCE_M, Wall
 
@@ -177,7 +177,7 @@ def _moved(
         return tidy_point(point[0] + d_x, point[1] + d_y)
 
     shift = np.array([d_x, d_y])
-    outline = shapely.transform(storey.outline, lambda xy: (xy + shift).round(7))
+    outline = shapely.transform(storey.outline, lambda xy: (xy + shift).round(DECIMALS))
     walls = tuple(replace(wall, start=to(wall.start), end=to(wall.end)) for wall in storey.walls)
     changes = tuple(
         replace(change, at=to(change.at), to=to(change.to) if change.to else None)

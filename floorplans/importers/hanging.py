@@ -11,7 +11,14 @@ from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.importers.draft import RawOpening
-from floorplans.repair_walls import Change, along_across, direction, tidy_point, wall_lines
+from floorplans.repair_walls import (
+    DECIMALS,
+    Change,
+    along_across,
+    direction,
+    tidy_point,
+    wall_lines,
+)
 from floorplans.walls import TOLERANCE_M, Opening, Wall
 from floorplans.walls import Point as Point2
 
@@ -238,7 +245,7 @@ def _opening(raw: RawOpening, wall: Wall, edge: BaseGeometry) -> Opening:
         material, thickness_m = DOOR_MATERIAL, thickness_m or DOOR_THICKNESS_M
     return Opening(
         offset_m=low,
-        width_m=round(high - low, 7),
+        width_m=round(high - low, DECIMALS),
         sill_m=sill_m if sill_m < head_m else 0.0,
         head_m=head_m,
         kind=raw.kind,
