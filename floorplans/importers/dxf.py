@@ -35,7 +35,7 @@ from floorplans.importers.dxf_openings import (
 from floorplans.importers.gap_filling import fill_gaps
 from floorplans.importers.hanging import WINDOW_MATERIAL, WINDOW_THICKNESS_M, join_leaves
 from floorplans.importers.material_runs import by_material, without_openings
-from floorplans.importers.squaring import squared
+from floorplans.importers.squaring import along_walls, squared
 from floorplans.importers.units import UNITS, check_size, guess_unit, unit_length
 from floorplans.importers.wall_areas import MAX_THICKNESS_M, walls_of_area
 from floorplans.importers.wall_strips import strips_of_lines
@@ -162,7 +162,8 @@ def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[Raw
         [area, *(line for line, _ in bodies.singles), *_panes(content, layers)]
     )
     openings = [o for symbol in content.symbols for o in openings_of_symbol(symbol, ground)]
-    openings = join_leaves([*openings, *_swing_openings(content, layers, ground)])
+    openings += _swing_openings(content, layers, ground)
+    openings = join_leaves(along_walls(openings, _faces(content, layers)))
     area = shapely.union_all([area, *fill_gaps(area, openings)])
     loose, glass = _loose_openings(content, layers, area)
     area = shapely.union_all([area, *fill_gaps(area, loose)])
@@ -175,6 +176,13 @@ def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[Raw
         *_single_walls(bodies, area),
         *_glass_walls(glass, area),
     ], openings
+
+
+def _faces(content: Content, layers: Layers) -> NDArray[np.float64]:
+    """All straight lines of walls and panes, (n, 2, 2) [m]."""
+    curves = [c for k in ("wall", "window") for name in layers.of(k) for c in content.curves[name]]
+    chains = [np.array([*curve.points, *curve.points[: curve.closed]]) for curve in curves]
+    return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
 
 
 def _panes(content: Content, layers: Layers) -> list[LineString]:

@@ -1,19 +1,24 @@
-"""Walls turned into the building's own directions."""
+"""Walls turned into the building's own directions, and openings into those of their walls."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import radians
+from math import radians, sin
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
+from shapely.geometry import Point
 
-from floorplans.importers.draft import RawWall
+from floorplans.importers.draft import RawOpening, RawWall
 
 _TURN = radians(1.0)
 _SIDEWAYS_M = 0.06
 """An end is moved at most this far by a turn [m]."""
+_NEARLY = sin(radians(8.0))
+_BESIDE_M = 0.6
+_MIN_FACE_M = 0.25
 
 
 def squared(walls: Sequence[RawWall]) -> list[RawWall]:
@@ -48,10 +53,43 @@ def squared(walls: Sequence[RawWall]) -> list[RawWall]:
     ]
 
 
+def along_walls(openings: Sequence[RawOpening], faces: NDArray[np.float64]) -> list[RawOpening]:
+    """Turn openings into the direction of the longest face beside them, if it is nearly theirs.
+
+    Parameters
+    ----------
+    openings : sequence of RawOpening
+    faces : (n, 2, 2) float64
+        Lines of walls [m].
+
+    Returns
+    -------
+    list of RawOpening
+        In the order given.
+    """
+    steps = faces[:, 1] - faces[:, 0]
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    tree = shapely.STRtree(np.array(shapely.linestrings(faces), dtype=np.object_))
+    turned: list[RawOpening] = []
+    for opening in openings:
+        far_m = opening.width_m / 2 + _BESIDE_M
+        near = tree.query(Point(opening.centre), "dwithin", distance=far_m)
+        near = near[lengths[near] > _MIN_FACE_M]
+        along = np.array(opening.direction if opening.direction is not None else (0.0, 0.0))
+        across = np.abs(steps[near, 0] * along[1] - steps[near, 1] * along[0])
+        near = near[across <= _NEARLY * lengths[near] * np.hypot(*along)]
+        if opening.direction is None or not near.size:
+            turned.append(opening)
+            continue
+        longest = int(near[np.argmax(lengths[near])])
+        turned.append(replace(opening, direction=_point(steps[longest] / lengths[longest])))
+    return turned
+
+
 def _main_direction(angles: NDArray[np.float64], lengths: NDArray[np.float64]) -> float:
     """Angle in [0, pi / 2) that walls of the greatest length share, up to right angles."""
     quarter = angles % (np.pi / 2)
-    shares = np.round(quarter / _TURN).astype(int)
+    shares = np.round(quarter / _TURN).astype(int) % 90
     best = int(np.argmax(np.bincount(shares, lengths)))
     near = np.abs((quarter - best * _TURN + np.pi / 4) % (np.pi / 2) - np.pi / 4) <= _TURN
     mean = np.angle(np.sum(lengths[near] * np.exp(4j * quarter[near]))) / 4 % (np.pi / 2)

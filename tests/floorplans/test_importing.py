@@ -32,7 +32,7 @@ from floorplans.importers.gap_filling import fill_gaps
 from floorplans.importers.hanging import join_leaves
 from floorplans.importers.material_runs import by_material
 from floorplans.importers.placing import CELL_M, place
-from floorplans.importers.squaring import squared
+from floorplans.importers.squaring import along_walls, squared
 from floorplans.importers.units import guess_unit
 from floorplans.importers.wall_strips import strips_of_lines
 from floorplans.walls import Wall
@@ -263,6 +263,14 @@ def test_walls_turn_into_the_main_directions_but_oblique_ones_stay():
     assert turned[0] == walls[0]
     assert turned[1].start[0] == pytest.approx(turned[1].end[0])
     assert turned[2] == walls[2]
+
+
+def test_openings_turn_into_the_direction_of_their_wall():
+    faces = np.array([[(-3, 0), (-0.5, 0.5)], [(-0.5, 0.5), (-0.5, 0.7)], [(9, 9), (10, 9)]])
+    nearly, across = door(0, 0.6, direction=(1.0, 0.12)), door(0, 0.6, direction=(0.0, 1.0))
+    turned = along_walls([nearly, across], faces)
+    assert turned[0].direction == pytest.approx(np.array([2.5, 0.5]) / np.hypot(2.5, 0.5))
+    assert turned[1] == across
 
 
 def test_two_lines_are_one_wall_and_the_nearest_is_the_partner():
