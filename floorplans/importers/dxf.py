@@ -164,12 +164,14 @@ def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[Raw
     openings = [o for symbol in content.symbols for o in openings_of_symbol(symbol, ground)]
     openings += _swing_openings(content, layers, ground)
     openings = join_leaves(along_walls(openings, _faces(content, layers)))
-    area = shapely.union_all([area, *fill_gaps(area, openings)])
+    filled = list(fill_gaps(area, openings))
+    area = shapely.union_all([area, *filled])
     loose, glass = _loose_openings(content, layers, area)
-    area = shapely.union_all([area, *fill_gaps(area, loose)])
+    filled += fill_gaps(area, loose)
+    area = shapely.union_all([area, *filled])
     openings = as_windows_outside([*openings, *loose], area)
     solid = without_openings(bodies.area, openings)
-    walls = walls_of_area(area, _CLOSE_M) if not area.is_empty else []
+    walls = walls_of_area(area, _CLOSE_M, shapely.union_all(filled)) if not area.is_empty else []
     walls = squared(without_doubles(walls, area))
     return [
         *(piece for wall in walls for piece in by_material(wall, solid)),

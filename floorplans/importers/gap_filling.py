@@ -124,18 +124,19 @@ def _exact(
     Faces that are set off from each other have less in common than each is deep; the gap is then
     as deep as the thinner of them, about the middle of what they share, if that much is free.
     """
-    low, high = rows
     thinnest_m = np.inf
+    lows, highs = [], []
     for side, beyond in zip(sides, (-1, 1), strict=True):
         x0, x1 = sorted((side + beyond * _OVER_M, side + beyond * 3 * _OVER_M))
         strip = local.intersection(box(x0, -_BESIDE_M, x1, _BESIDE_M))
         for face in shapely.get_parts(strip):
             _, bottom, _, top = face.bounds
-            if top <= low or bottom >= high:
+            if top <= rows[0] or bottom >= rows[1]:
                 continue
             thinnest_m = min(thinnest_m, top - bottom)
-            low = bottom if low < bottom < low + _STEP_M else low
-            high = top if high - _STEP_M < top < high else high
+            lows += [bottom] if abs(bottom - rows[0]) < _STEP_M else []
+            highs += [top] if abs(top - rows[1]) < _STEP_M else []
+    low, high = max(lows, default=rows[0]), min(highs, default=rows[1])
     if np.isfinite(thinnest_m) and high - low < _MIN_COMMON * thinnest_m:
         middle, half = (low + high) / 2, thinnest_m / 2
         whole = box(sides[0] + _OVER_M, middle - half, sides[1] - _OVER_M, middle + half)

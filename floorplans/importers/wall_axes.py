@@ -98,7 +98,8 @@ def _on_line_of(first: Axis, other: Axis) -> bool:
 
 def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
     """Put a group on its line of least squares, in the direction of its longest axis."""
-    areas = np.array([axis.length_m * axis.thickness_m for axis in group])
+    built = [axis for axis in group if not axis.is_filling] or group
+    areas = np.array([axis.length_m * axis.thickness_m * (axis in built) for axis in group])
     towards = np.array([axis.vector * np.sign(axis.vector @ group[0].vector) for axis in group])
     along = towards.sum(axis=0) / np.hypot(*towards.sum(axis=0))
     across = np.array([-along[1], along[0]])
