@@ -2,7 +2,9 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -63,17 +65,17 @@ def test_a_wall_that_was_moved_stays_moved(origin: GeoOrigin | None) -> None:
     collection = plan_to_geojson(plan)
     counter = collection["features"][-3]
     assert counter["properties"]["material"] == "chipboard"
-    end = [[4.6, 1.5]] if origin is None else None
-    counter["geometry"]["coordinates"][1:] = end or [
-        ORIGIN.to_degrees(floorplans_points(4.6, 1.5))[0].tolist()
-    ]
+    end = np.array([[4.6, 1.5]])
+    counter["geometry"]["coordinates"][1:] = (origin.to_degrees(end) if origin else end).tolist()
     assert plan_from_geojson(collection).walls[-1].end == pytest.approx((4.6, 1.5), abs=1e-6)
 
 
-def floorplans_points(x: float, y: float):
-    import numpy as np
-
-    return np.array([[x, y]])
+def test_materials_of_a_plan_read_back() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "plan_format.md").read_text("utf-8")
+    plan = floorplans.loads(page.split("```toml\n")[1].split("```")[0])
+    assert plan.materials
+    assert plan_from_geojson(json.loads(dumps_geojson(plan))) == plan
+    assert plan_from_geojson(json.loads(dumps_geojson(replace(plan, origin=None)))).origin is None
 
 
 @pytest.mark.parametrize(
