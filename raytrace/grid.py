@@ -1,5 +1,6 @@
 """The receiver grid of a map and the limits of a trace."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,11 +83,19 @@ class TraceConfig:
     max_transmissions
         Most walls that a path goes through, straight on, with the slabs' transmission; doors and
         windows that are filled are walls.
+    min_power_dbm
+        Paths that are known to arrive with less are left out; all are kept by default. The map
+        then holds a bound on what was left out (`RadioMap.left_out_db`).
+    max_paths
+        The most paths that are looked at for a whole map: `min_power_dbm` is raised, 1 dB at a
+        time, until it is kept. No limit by default.
     """
 
     max_reflections: int = 6
     max_diffractions: int = 1
     max_transmissions: int = 0
+    min_power_dbm: float = -math.inf
+    max_paths: int | None = None
 
     def __post_init__(self) -> None:
         """Check the limits; raise ValueError where one cannot be."""
@@ -96,3 +105,7 @@ class TraceConfig:
             raise ValueError(f"max_diffractions = {self.max_diffractions}: expected 0 or 1")
         if not 0 <= self.max_transmissions <= 20:
             raise ValueError(f"max_transmissions = {self.max_transmissions}: expected 0 to 20")
+        if math.isnan(self.min_power_dbm):
+            raise ValueError("min_power_dbm is not a number: expected a level in dBm")
+        if self.max_paths is not None and self.max_paths < 1:
+            raise ValueError(f"max_paths = {self.max_paths}: expected 1 or more, or None")

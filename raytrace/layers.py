@@ -40,6 +40,7 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
         "delay_spread_s": np.where(reached, np.sqrt(variance), 0.0) / SPEED_OF_LIGHT,
         "angular_spread": np.where(reached, np.sqrt(np.maximum(1.0 - focus, 0.0)), 0.0),
         "k_factor_db": _ratio_db(strongest, rest),
+        "left_out_db": _ratio_db(sums.left_out, power),
     }
 
 
@@ -51,9 +52,9 @@ def _dbm(power: Floats, power_dbm: float) -> Floats:
     return dbm
 
 
-def _ratio_db(strongest: Floats, rest: Floats) -> Floats:
-    """Strongest path over the rest [dB]: inf for a single path, -inf for none."""
-    ratio = np.where(strongest > 0.0, np.inf, -np.inf)
-    some = (strongest > 0.0) & (rest > 0.0)
-    ratio[some] = 10.0 * np.log10(strongest[some] / rest[some])
+def _ratio_db(power: Floats, rest: Floats) -> Floats:
+    """Power over the rest [dB]: inf where there is no rest, -inf where there is no power."""
+    ratio = np.where(power > 0.0, np.inf, -np.inf)
+    some = (power > 0.0) & (rest > 0.0)
+    ratio[some] = 10.0 * np.log10(power[some] / rest[some])
     return ratio

@@ -93,6 +93,7 @@ def prepare(
         image_bounces=image_heights(0.0, 1.0, config.max_reflections)[1],
         max_order=config.max_reflections,
         max_walls=config.max_transmissions,
+        least_power=10.0 ** ((config.min_power_dbm - source.power_dbm) / 10.0),
     )  # fmt: skip
     band = [z, *heights, *(e.z for e in scene.level_edges)]
     bounces = bounces_needed(view, min(band), max(band), config.max_transmissions > 0)

@@ -1,15 +1,20 @@
 """Sums over all paths, on any number of threads with the same result."""
 
+import math
 import os
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from raytrace.families import Family, all_families
 from raytrace.kernels.tracing import STRONGEST, Sums, new_record, new_sums
 from raytrace.preparing import Tracing
+
+Floats = NDArray[np.float64]
 
 Progress = Callable[[int, int], None]
 """Called with the number of finished parts and of all parts."""
@@ -34,20 +39,44 @@ def sum_paths(
     progress
         Called as families are done.
     """
-    families = all_families(tracing)
+    threads = threads or default_threads()
+    if tracing.config.max_paths is not None:
+        bounded = _sum(with_least_power(tracing, math.inf), threads, None)
+        least = _least_power(bounded.bins, tracing.config.max_paths)
+        tracing = with_least_power(tracing, max(least, tracing.trace.least_power))
+    return _sum(tracing, threads, progress)
+
+
+def with_least_power(tracing: Tracing, least_power: float) -> Tracing:
+    """Return the same trace, which leaves out paths below another power."""
+    return replace(tracing, trace=tracing.trace._replace(least_power=least_power))
+
+
+def _least_power(bins: Floats, max_paths: int) -> float:
+    """Lowest power, of whole decibels, above which there are no more paths than that."""
+    kept = np.cumsum(bins)
+    if kept[-1] <= max_paths:
+        return 0.0
+    return float(10.0 ** (-0.1 * np.flatnonzero(kept > max_paths)[0]))
+
+
+def _sum(tracing: Tracing, threads: int, progress: Progress | None) -> Sums:
+    """Sum families as they are done, in their order."""
+    families = deque(all_families(tracing))
+    n_families = len(families)
     total = new_sums(len(tracing.trace.receivers), tracing.config.max_reflections)
-    for done, part in enumerate(_in_order(tracing, families, threads or default_threads()), 1):
+    for done, part in enumerate(_in_order(tracing, families, threads), 1):
         strongest = np.maximum(total.moments[:, STRONGEST], part.moments[:, STRONGEST])
         for whole, addend in zip(total, part, strict=True):
             whole += addend
         total.moments[:, STRONGEST] = strongest
         if progress is not None:
-            progress(done, len(families))
+            progress(done, n_families)
     return total
 
 
-def _in_order(tracing: Tracing, families: Sequence[Family], threads: int) -> Iterator[Sums]:
-    """Sums of each family, in their order, computed a few ahead."""
+def _in_order(tracing: Tracing, families: deque[Family], threads: int) -> Iterator[Sums]:
+    """Sums of each family, in their order, computed a few ahead; a family is then let go."""
 
     def sums_of(family: Family) -> Sums:
         sums = new_sums(len(tracing.trace.receivers), tracing.config.max_reflections)
@@ -57,9 +86,9 @@ def _in_order(tracing: Tracing, families: Sequence[Family], threads: int) -> Ite
     pool = ThreadPoolExecutor(threads)
     try:
         ahead: deque[Future[Sums]] = deque()
-        for family in families:
-            ahead.append(pool.submit(sums_of, family))
-            if len(ahead) > 8 * threads:
+        while families:
+            ahead.append(pool.submit(sums_of, families.popleft()))
+            if len(ahead) > 4 * threads:
                 yield ahead.popleft().result()
         while ahead:
             yield ahead.popleft().result()

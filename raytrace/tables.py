@@ -16,7 +16,7 @@ from raytrace.antennas import (
 )
 from raytrace.kernels.field import Radio
 from raytrace.kernels.utd import TRANSITION_MAX, TRANSITION_STEPS
-from raytrace.materials import Slab, slab_tables, transmission_tables
+from raytrace.materials import SLAB_TABLE_STEPS, Slab, slab_tables, transmission_tables
 from raytrace.transmitter import Transmitter
 
 Floats = NDArray[np.float64]
@@ -46,6 +46,7 @@ def make_radio(
         through=transmission_tables(slabs, transmitter.frequency_hz)
         if through_walls
         else np.empty((0, 2, 4)),
+        highest=highest_reflections(slabs, transmitter.frequency_hz),
         transition=transition_table(),
         cis=np.column_stack([np.cos(turn), np.sin(turn)]),
         **_antennas(transmitter.antenna, receive_antenna or HalfWaveDipole()),
@@ -55,21 +56,34 @@ def make_radio(
 def _antennas(transmit: Antenna, receive: Antenna) -> dict[str, Any]:
     """Tables of both antennas: over the elevation alone where that is all they depend on."""
     if is_upright(transmit) and is_upright(receive):
-        none = np.empty((0, 2, 2, 2), np.complex128)
+        tables = antenna_table(transmit), antenna_table(receive)
         return {
-            "transmit": antenna_table(transmit),
-            "receive": antenna_table(receive),
-            "patterns": none,
+            "transmit": tables[0],
+            "receive": tables[1],
+            "patterns": np.empty((0, 2, 2, 2), np.complex128),
+            "peak": float(np.prod([np.max(t**2) for t in tables])),
         }
     patterns = np.stack([np.stack(antenna_tables(a), axis=-1) for a in (transmit, receive)])
     unused = np.zeros(2)
-    return {"transmit": unused, "receive": unused, "patterns": patterns}
+    peak = float(np.prod((np.abs(patterns) ** 2).sum(axis=-1).max(axis=(1, 2))))
+    return {"transmit": unused, "receive": unused, "patterns": patterns, "peak": peak}
 
 
 def antenna_table(antenna: Antenna) -> Floats:
     """Tabulate an antenna's amplitude over the z component of the direction, -1 to 1."""
     amplitude = upright_amplitude(antenna, np.linspace(-1.0, 1.0, ANTENNA_STEPS + 1))
     return np.append(amplitude, amplitude[-1])
+
+
+def highest_reflections(slabs: Sequence[Slab], frequency_hz: float) -> Floats:
+    """Tabulate max(|R_te|^2, |R_tm|^2) over a cosine of incidence and all above (n, steps + 2)."""
+    cos_i = np.append(np.linspace(0.0, 1.0, SLAB_TABLE_STEPS + 1), 1.0)
+    rows: list[Floats] = []
+    for slab in slabs:
+        c = slab.material.coefficients(slab.thickness_m, frequency_hz, cos_i)
+        share = np.maximum(np.abs(c.r_te), np.abs(c.r_tm)) ** 2
+        rows.append(np.maximum.accumulate(share[::-1])[::-1])
+    return np.array(rows)
 
 
 def transition_table() -> Floats:

@@ -41,7 +41,8 @@ def sentence(cost: CostEstimate, grid: Grid) -> str:
     cells = grid.x.size * grid.y.size
     return (
         f"this map will take about {_duration(cost.seconds)}: some {_count(cost.paths)} paths over "
-        f"{_count(cells)} cells; larger cells or fewer reflections make it shorter"
+        f"{_count(cells)} cells; larger cells, fewer reflections, --min-power or "
+        "--max-paths make it shorter"
     )
 
 

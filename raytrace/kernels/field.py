@@ -42,6 +42,10 @@ class Radio(NamedTuple):
     through
         (n_slabs, steps + 2, 4) see `raytrace.materials.transmission_tables`; of no slab where
         paths go through no wall.
+    highest
+        (n_slabs, steps + 2) largest reflected share of the power at a cosine of incidence or above.
+    peak
+        Largest power gain of both antennas together.
     transition
         (steps + 2, 2) F(s^2) / s of the UTD transition function, see `raytrace.kernels.utd`.
     cis
@@ -60,6 +64,8 @@ class Radio(NamedTuple):
     ceiling: int
     slabs: Floats
     through: Floats
+    highest: Floats
+    peak: float
     transition: Floats
     cis: Floats
     transmit: Floats

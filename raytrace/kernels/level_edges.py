@@ -20,7 +20,16 @@ from raytrace.kernels.field import (
 )
 from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView
 from raytrace.kernels.strips import StripTree, from_frame
-from raytrace.kernels.tracing import Record, Sums, Trace, arrived, recorded, straight_line
+from raytrace.kernels.tracing import (
+    Record,
+    Sums,
+    Trace,
+    arrived,
+    free_space,
+    leave_out,
+    recorded,
+    straight_line,
+)
 from raytrace.kernels.unfolding import (
     NUDGE_M,
     TOUCHING,
@@ -164,6 +173,12 @@ def sum_level_edge(
             if stretch[1] - stretch[0] <= TIE_M:
                 continue
             ends = (legs_in.x[p], seen[hit, 0])
+            if trace.least_power > 0.0:
+                bound = free_space(trace, math.hypot(abs(legs_in.h[p]) + h, ends[1] - ends[0]))
+                if bound < trace.least_power:
+                    left = 2 * budget * (budget + 1) + 1
+                    leave_out(trace, sums, r, bound, left * hits.share[hit])
+                    continue
             at = (legs_in.beam[p], legs_in.h[p], i, h)
             for a in range(2 * budget + 1):
                 across_in = math.sqrt(legs_in.h[p] ** 2 + (z_in[a] - rim.z) ** 2)

@@ -5,7 +5,17 @@ import math
 from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Hits, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import arriving_sine, carried, new_ray, phasor, received, sent
-from raytrace.kernels.tracing import Record, Sums, Trace, arrived, recorded, straight_line
+from raytrace.kernels.tracing import (
+    Record,
+    Sums,
+    Trace,
+    arrived,
+    free_space,
+    leave_out,
+    leg_bound,
+    recorded,
+    straight_line,
+)
 from raytrace.kernels.unfolding import Leg, fitting, unfold
 
 
@@ -33,6 +43,12 @@ def sum_reflections(
         n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (x, y), leg)
         arriving = (tree.beam[i, IMAGE_X] - x) / length, (tree.beam[i, IMAGE_Y] - y) / length
         order, straight = tree.link[i, ORDER], straight_line(trace, r)
+        if trace.least_power > 0.0:
+            bound = free_space(trace, length) * leg_bound(trace, leg, n, length, order)
+            if bound < trace.least_power:
+                left = 2 * (trace.max_order - order) + 1
+                leave_out(trace, sums, r, bound, left * hits.share[hit])
+                continue
         for k in range(2 * (trace.max_order - order) + 1):
             rise = trace.image_z[trace.level[r], k] - z_source
             slope = rise / length

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import Radio
 from raytrace.kernels.plan_view import Floats, Ints, PlanView
+from raytrace.kernels.unfolding import KIND, NORMAL, REFLECT_WALL, WHAT, Leg
 
 
 class Trace(NamedTuple):
@@ -32,6 +33,8 @@ class Trace(NamedTuple):
         (2 max_order + 1,) how many reflections each image has.
     max_order, max_walls
         Most reflections on a path, and most walls it goes through.
+    least_power
+        Paths whose power is known to be below this are left out [share of the transmitted].
     """
 
     plan: PlanView
@@ -44,6 +47,7 @@ class Trace(NamedTuple):
     image_bounces: Ints
     max_order: int
     max_walls: int
+    least_power: float
 
 
 class Sums(NamedTuple):
@@ -61,13 +65,23 @@ class Sums(NamedTuple):
         (n, 5) sums of power times detour and times its square, the detour being what a path is
         longer than the straight line [m]; sums of power times cosine and times sine of the
         azimuth it arrives at; power of the strongest path.
+    left_out
+        (n,) bound on the power of the paths that were left out.
+    bins
+        (LEVELS,) paths left out by their bounds, in steps of 1 dB downwards from 0 dB; counted
+        only where everything is left out.
     """
 
     field: NDArray[np.complex128]
     power: Floats
     n_paths: Floats
     moments: Floats
+    left_out: Floats
+    bins: Floats
 
+
+LEVELS = 400
+"""Rows of `Sums.bins`."""
 
 DETOUR, DETOUR_SQUARED, COSINE, SINE, STRONGEST = range(5)
 """Columns of `Sums.moments`."""
@@ -100,6 +114,8 @@ def new_sums(n_receivers: int, max_order: int) -> Sums:
         np.zeros(n_receivers),
         np.zeros((n_receivers, max_order + 1)),
         np.zeros((n_receivers, 5)),
+        np.zeros(n_receivers),
+        np.zeros(LEVELS),
     )
 
 
@@ -152,6 +168,45 @@ def arrived(
     moments[DETOUR_SQUARED] += size * detour * detour
     moments[COSINE] += size * direction[0]
     moments[SINE] += size * direction[1]
+
+
+@jit(inner=True)
+def leave_out(trace: Trace, sums: Sums, r: int, bound: float, n_paths: float) -> None:
+    """Note that paths are left out, so many, each of a power below a bound."""
+    sums.left_out[r] += n_paths * bound
+    if math.isinf(trace.least_power):
+        level = int(-10.0 * math.log10(max(bound, 1e-39)))
+        sums.bins[max(level, 0)] += n_paths
+
+
+@jit(inner=True, fast=True)
+def leg_bound(trace: Trace, leg: Leg, n: int, length: float, order: int) -> float:
+    """Bound on the share of the power that the walls on a leg reflect.
+
+    Parameters
+    ----------
+    trace
+        The trace.
+    leg, n, length
+        The leg, its items, its horizontal length [m].
+    order
+        Its reflections at walls; what is left to floor and ceiling bounds its slope.
+    """
+    rise = (trace.max_order - order + 1) * trace.radio.height
+    cos_el = length / math.sqrt(length * length + rise * rise)
+    bound, steps = 1.0, trace.radio.highest.shape[1] - 2
+    for k in range(n):
+        if leg.marks[k, KIND] == REFLECT_WALL:
+            at = int(abs(leg.items[k, NORMAL]) * cos_el * steps)
+            bound *= trace.radio.highest[leg.marks[k, WHAT], at]
+    return bound
+
+
+@jit(inline=True)
+def free_space(trace: Trace, length: float) -> float:
+    """Bound on the received share of the power over a distance [m]."""
+    size = trace.radio.wavelength / (4.0 * math.pi * length)
+    return trace.radio.peak * size * size
 
 
 @jit(inline=True)

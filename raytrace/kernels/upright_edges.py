@@ -14,7 +14,17 @@ from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Hits, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import arriving_sine, carried, new_ray, phasor, received, sent
 from raytrace.kernels.plan_view import TIE_M, Floats, Ints, folded
-from raytrace.kernels.tracing import Record, Sums, Trace, arrived, recorded, straight_line
+from raytrace.kernels.tracing import (
+    Record,
+    Sums,
+    Trace,
+    arrived,
+    free_space,
+    leave_out,
+    leg_bound,
+    recorded,
+    straight_line,
+)
 from raytrace.kernels.unfolding import (
     MISFIT,
     NUDGE_M,
@@ -72,6 +82,8 @@ class LegsIn(NamedTuple):
         (n,) share at a tie.
     departure
         (n, 2) horizontal direction at the source.
+    bound
+        (n,) see `tracing.leg_bound`.
     angles
         (n, 6) see `write_angles`.
     items, marks
@@ -84,6 +96,7 @@ class LegsIn(NamedTuple):
     phi: Floats
     share: Floats
     departure: Floats
+    bound: Floats
     angles: Floats
     items: Floats
     marks: Ints
@@ -140,6 +153,7 @@ def legs_to_edge(
         np.empty(n_beams),
         np.empty(n_beams),
         np.empty((n_beams, 2)),
+        np.empty(n_beams),
         np.empty((n_beams, 6)),
         np.empty((n_beams, most, 5)),
         np.empty((n_beams, most, 2), np.int64),
@@ -156,6 +170,7 @@ def legs_to_edge(
         legs.departure[kept, 0], legs.departure[kept, 1] = ux, uy
         legs.order[kept], legs.n_items[kept] = tree.link[i, ORDER], n
         legs.length[kept], legs.phi[kept], legs.share[kept] = length, phi, share[b]
+        legs.bound[kept] = leg_bound(trace, leg, n, length, tree.link[i, ORDER])
         write_angles(phi, edge.wedge.n, legs.angles[kept])
         kept += 1
     return LegsIn(
@@ -165,6 +180,7 @@ def legs_to_edge(
         legs.phi[:kept],
         legs.share[:kept],
         legs.departure[:kept],
+        legs.bound[:kept],
         legs.angles[:kept],
         legs.items[:kept],
         legs.marks[:kept],
@@ -274,6 +290,29 @@ def pair_gain(
     return gain * (size * root) * phasor(radio.cis, total / (ray.cos_el * radio.wavelength))
 
 
+@jit(inner=True, fast=True)
+def wedge_bound(
+    trace: Trace, wedge: Wedge, terms: WedgeTerms, lengths: tuple[float, float], order: int
+) -> float:
+    """Bound on a diffracted power over that of a free path as long.
+
+    A term of a half plane has at most half the field there, and at most 1 / (2 sqrt(pi) s) of it,
+    s the argument of its transition function; a wedge has four.
+    """
+    if not wedge.is_sheet:
+        return 4.0
+    total = lengths[0] + lengths[1]
+    rise = (trace.max_order - order + 1) * trace.radio.height
+    cos_el = total / math.sqrt(total * total + rise * rise)
+    reduced = lengths[0] * lengths[1] / total
+    spread = math.sqrt(4.0 * math.pi / trace.radio.wavelength * reduced * cos_el)
+    share = 0.0
+    for cosine in (terms.cos_minus, terms.cos_plus):
+        s = 2.0 * math.sqrt(math.pi) * spread * abs(cosine)
+        share += 0.5 if s < 2.0 else 1.0 / s
+    return share * share
+
+
 @jit(fast=True, allocates=False)
 def sum_upright_edge(
     trace: Trace,
@@ -312,6 +351,9 @@ def sum_upright_edge(
         phi = from_face(math.atan2(uy, ux), edge.o_face)
         write_angles(phi, edge.wedge.n, angles)
         straight = straight_line(trace, r)
+        bound_out = 1.0
+        if trace.least_power > 0.0:
+            bound_out = leg_bound(trace, leg, n, length, tree.link[i, ORDER])
         tie = 0.5 * TIE_M / length
         for p in range(len(legs_in.order)):
             order = tree.link[i, ORDER] + legs_in.order[p]
@@ -326,6 +368,14 @@ def sum_upright_edge(
                 arriving,
             )  # fmt: skip
             share_here = legs_in.share[p] * hits.share[hit]
+            if trace.least_power > 0.0:
+                lengths = (legs_in.length[p], length)
+                bound = wedge_bound(trace, edge.wedge, terms, lengths, order)
+                bound *= free_space(trace, total) * bound_out * legs_in.bound[p]
+                if bound < trace.least_power:
+                    left = 2 * (trace.max_order - order) + 1
+                    leave_out(trace, sums, r, bound, left * share_here)
+                    continue
             for k in range(2 * (trace.max_order - order) + 1):
                 rise = trace.image_z[trace.level[r], k] - trace.source[2]
                 slope = rise / total

@@ -49,6 +49,25 @@ Transmissions = Annotated[
         "--transmissions", metavar="N", min=0, max=20, help="Most walls that a path goes through."
     ),
 ]
+MinPower = Annotated[
+    float | None,
+    typer.Option(
+        "--min-power",
+        metavar="DBM",
+        help="Leave out paths known to be weaker; the map bounds what is missing.",
+        show_default="none is left out",
+    ),
+]
+MaxPaths = Annotated[
+    int | None,
+    typer.Option(
+        "--max-paths",
+        metavar="N",
+        min=1,
+        help="Raise --min-power until the map takes no more paths than this.",
+        show_default="no limit",
+    ),
+]
 Frequency = Annotated[
     float,
     typer.Option("--frequency", metavar="GHZ", min=0.001, help="Carrier frequency in GHz."),

@@ -1,5 +1,6 @@
 """``rssnav map`` and ``rssnav maps``: radio maps of floor plans."""
 
+import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -20,6 +21,8 @@ from rssnav.cli.options import (
     Frequency,
     Height,
     Json,
+    MaxPaths,
+    MinPower,
     Picture,
     Plan,
     Power,
@@ -63,6 +66,8 @@ def map_plan(
     reflections: Reflections = TraceConfig.max_reflections,
     diffractions: Diffractions = TraceConfig.max_diffractions,
     transmissions: Transmissions = TraceConfig.max_transmissions,
+    min_power: MinPower = None,
+    max_paths: MaxPaths = None,
     edition: Edition = None,
     threads: Threads = None,
     force: Force = False,
@@ -86,7 +91,13 @@ def map_plan(
             output,
             cell_size_m=cell_size,
             height_m=height,
-            config=TraceConfig(reflections, diffractions, transmissions),
+            config=TraceConfig(
+                reflections,
+                diffractions,
+                transmissions,
+                -math.inf if min_power is None else min_power,
+                max_paths,
+            ),
             frequency_hz=frequency * 1e9,
             power_dbm=power,
             edition=edition,

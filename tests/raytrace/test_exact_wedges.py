@@ -119,9 +119,7 @@ def test_upright_edges_are_soft(name: str, azimuth_deg: float) -> None:
     angle = np.linspace(0.05, n * np.pi - 0.05, 40)
     around = np.cos(angle)[:, None] * SOUTH + np.sin(angle)[:, None] * EAST
     receivers = EDGE + np.linspace(4.0, 12.0, 40)[:, None] * around
-    exact = wedge_field(
-        n, polar(source[None], SOUTH, EAST), polar(receivers, SOUTH, EAST), SOFT
-    )
+    exact = wedge_field(n, polar(source[None], SOUTH, EAST), polar(receivers, SOUTH, EAST), SOFT)
     error = np.abs(traced_field(building, source, receivers) - exact)
     assert (error < UNIFORM / 9.0).all()
 
@@ -132,8 +130,6 @@ def test_a_lintel_is_hard_across() -> None:
     source = np.array([12.0, 20.0, 3.0])
     z = np.linspace(0.5, 11.5, 40)
     receivers = np.column_stack([np.full(40, 27.0), np.full(40, source[1]), z])
-    exact = wedge_field(
-        2.0, polar(source[None], UP, WEST), polar(receivers, UP, WEST), HARD
-    )
+    exact = wedge_field(2.0, polar(source[None], UP, WEST), polar(receivers, UP, WEST), HARD)
     error = np.abs(traced_field(building, source, receivers) - exact)
     assert (error < UNIFORM / 8.0).all()
