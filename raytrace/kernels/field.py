@@ -100,7 +100,7 @@ def slab_lookup(slabs: Floats, slab: int, cosine: float) -> tuple[complex, compl
     """R_tm and (R_te + R_tm) / sin^2, or T_tm and (T_te - T_tm) / sin^2, of a slab."""
     steps = slabs.shape[1] - 2
     t = cosine * steps
-    k = int(t)
+    k = min(max(int(t), 0), steps)
     w = t - k
     v = 1.0 - w
     a, b = slabs[slab, k], slabs[slab, k + 1]
@@ -120,7 +120,7 @@ def both_reflections(slabs: Floats, slab: int, cosine: float) -> tuple[complex, 
 def interpolated(table: Floats, sine: float) -> float:
     """Entry of a table over -1 to 1."""
     t = (sine + 1.0) * (0.5 * (len(table) - 2))
-    k = int(t)
+    k = min(max(int(t), 0), len(table) - 2)
     return table[k] + (table[k + 1] - table[k]) * (t - k)
 
 
@@ -129,7 +129,7 @@ def phasor(cis: Floats, turns: float) -> complex:
     """exp(-2 pi j turns), to 1e-12: a table and a short Taylor series."""
     steps = len(cis) - 1
     t = (turns - math.floor(turns)) * steps
-    k = int(t)
+    k = min(max(int(t), 0), steps)
     d = (t - k) * (2.0 * math.pi / steps)
     d2 = d * d
     cosine = 1.0 - d2 * (0.5 - d2 * (1.0 / 24.0))
@@ -267,8 +267,8 @@ def pattern_at(
     else:
         turn = 2.0 - quarter if y >= 0.0 else 2.0 + quarter
     column = turn * 0.25 * (pattern.shape[1] - 1)
-    i = min(int(row), pattern.shape[0] - 2)
-    j = min(int(column), pattern.shape[1] - 2)
+    i = min(max(int(row), 0), pattern.shape[0] - 2)
+    j = min(max(int(column), 0), pattern.shape[1] - 2)
     v, w = row - i, column - j
     low, high = pattern[i], pattern[i + 1]
     upright = (1.0 - v) * ((1.0 - w) * low[j, 0] + w * low[j + 1, 0])

@@ -197,7 +197,7 @@ def leg_bound(trace: Trace, leg: Leg, n: int, length: float, order: int) -> floa
     bound, steps = 1.0, trace.radio.highest.shape[1] - 2
     for k in range(n):
         if leg.marks[k, KIND] == REFLECT_WALL:
-            at = int(abs(leg.items[k, NORMAL]) * cos_el * steps)
+            at = min(int(abs(leg.items[k, NORMAL]) * cos_el * steps), steps)
             bound *= trace.radio.highest[leg.marks[k, WHAT], at]
     return bound
 

@@ -111,6 +111,8 @@ def unfold(
     rest, k = length, n
     while k > 0:
         e = link[i, EDGE]
+        if e < 0:
+            break
         passed = link[i, REFLECTED] == 0
         if passed and view.profile[e] < 0:
             i = link[i, PARENT]

@@ -101,7 +101,7 @@ def transition_ratio(table: Floats, s: float) -> complex:
         x = s * s
         return complex((1.0 - 0.75 / (x * x)) / s, 0.5 / (x * s))
     t = s * (TRANSITION_STEPS / TRANSITION_MAX)
-    k = int(t)
+    k = min(max(int(t), 0), TRANSITION_STEPS)
     w = t - k
     v = 1.0 - w
     return complex(table[k, 0] * v + table[k + 1, 0] * w, table[k, 1] * v + table[k + 1, 1] * w)

@@ -172,7 +172,7 @@ def _totals(paths: Paths) -> dict[str, Any]:
     """Sums over all paths: powers, coherent field, delays, directions."""
     s = PathStatistics.of(paths, POWER_DBM, 1)
     return {
-        "paths": len(paths),
+        "paths": int(s.path_count[0]),
         "rss_dbm": float(s.rss_dbm[0]),
         "rss_coherent_dbm": float(s.rss_coherent_dbm[0]),
         "mean_delay_s": float(s.mean_delay_s[0]),

@@ -385,12 +385,12 @@ def test_goal_suits_the_map(session) -> None:
 
 
 def test_what_a_map_carries_shows_under_the_pointer(session) -> None:
-    radio_map = session.complete_map.radio_map
-    with_spread = replace(radio_map, delay_spread_s=np.zeros_like(radio_map.rss_dbm))
+    with_spread = session.complete_map.radio_map
+    without = replace(with_spread, delay_spread_s=None)
     shown = MapFigure(FLAT, 2.0, on_move=print, on_drag=print, on_tap=print)
     hover = shown.model.select_one(HoverTool)
     for drawn, names in (
-        (radio_map, ["RSS", "paths", "at"]),
+        (without, ["RSS", "paths", "at"]),
         (with_spread, ["RSS", "paths", "delay spread", "at"]),
     ):
         shown.show_map(drawn)
