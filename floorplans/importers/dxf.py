@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from floorplans.errors import PlanError
 from floorplans.importers.doubles import without_doubles
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
 from floorplans.importers.dxf_curves import Curve, Swing
@@ -45,6 +46,8 @@ if TYPE_CHECKING:
 
 CHORD_M = 0.02
 """Chords leave an arc by at most this [m]."""
+MAX_LINES = 20_000
+"""Lines on the layers of walls; more are no single storey."""
 _PAIR_M = 0.6
 """Two lines farther apart than this are not the sides of one wall [m]."""
 _CLOSE_M = 0.02
@@ -198,6 +201,7 @@ def _bodies(content: Content, layers: Layers) -> _Bodies:
     curves: dict[Material, list[Curve]] = {}
     for layer in layers.of("wall"):
         curves.setdefault(layers.material(layer), []).extend(content.curves[layer])
+    _check_number(curves)
     sorted_out = {material: _thin_bodies(chains) for material, chains in curves.items()}
     faces = shapely.union_all([body for closed, _ in sorted_out.values() for body in closed])
     beside = faces.buffer(_AT_FACE_M)
@@ -209,6 +213,16 @@ def _bodies(content: Content, layers: Layers) -> _Bodies:
         area[material] = shapely.union_all([*closed, *strips])
         singles += [(LineString(ends), material) for ends in walls.singles]
     return _Bodies(area, tuple(singles))
+
+
+def _check_number(curves: Mapping[Material, Sequence[Curve]]) -> None:
+    """Refuse more lines than the walls of a storey have, before the slow work."""
+    n_lines = sum(len(chain.points) for chains in curves.values() for chain in chains)
+    if n_lines > MAX_LINES:
+        raise PlanError(
+            f"the layers of walls hold {n_lines} lines, more than the {MAX_LINES} of a single "
+            "storey; leave layers out with --layer NAME=ignore, or save one storey"
+        )
 
 
 def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:

@@ -10,15 +10,15 @@ from math import dist
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString, MultiLineString, Point, Polygon
-from shapely.geometry.base import BaseGeometry
+from shapely.geometry import MultiPoint, Polygon
 
 from floorplans.errors import PlanError
+from floorplans.importers.gap_links import gap_links, link_lengths
 from floorplans.repair import split_at_junctions
-from floorplans.repair_walls import Change, direction, tidy_point, wall_lines
+from floorplans.repair_walls import Change, wall_lines
 from floorplans.walls import TOLERANCE_M, Wall
 
-_GAPS_M = (0.0, 0.3, 1.0, 2.0, 4.0, 8.0)
+_GAPS_M = (0.0, 0.3, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0)
 """Gaps in the outline that are closed: tried in this order, the least that does it."""
 _ENOUGH = 0.02
 """A wider gap is closed only if it brings this share of all walls' length inside."""
@@ -60,7 +60,7 @@ def enclose(walls: Sequence[Wall], given: Polygon | None, height_m: float) -> St
     changes = [
         Change("closed", f"gap of {dist(a, b):.2f} m in the outline closed", a, b) for a, b in links
     ]
-    closing = [_like_nearest(pieces, a, b) for a, b in links]
+    closing = _closing(pieces, links)
     inside = _inside(split_at_junctions([*pieces, *closing]), outline, changes)
     raised = _raised(inside, outline, height_m, changes)
     return Storey(outline, raised, tuple(changes))
@@ -81,14 +81,17 @@ def _best_region(pieces: Sequence[Wall], given: Polygon | None) -> tuple[Polygon
     lines = wall_lines(pieces)
     total_m = float(shapely.length(lines).sum())
     best: tuple[float, Polygon, list[Link]] | None = None
+    links = gap_links(lines, max(_GAPS_M))
+    lengths_m = link_lengths(links)
     for gap_m in _GAPS_M:
-        links = _links(pieces, lines, gap_m) if gap_m else []
-        region = _region(lines, links, given)
+        region = _region(lines, links[lengths_m <= gap_m], given)
         if region is None:
             continue
         share = _length_inside(lines, region) / total_m
         if best is None or share > best[0] + _ENOUGH:
             best = (share, region, _open_stretches(region, lines))
+        if best[0] > 1 - _ENOUGH:
+            break
     if best is None:
         raise PlanError(
             "the walls close no region, even with gaps of "
@@ -113,10 +116,11 @@ def _open_stretches(region: Polygon, lines: NDArray[np.object_]) -> list[Link]:
 
 
 def _region(
-    lines: NDArray[np.object_], links: Sequence[Link], given: Polygon | None
+    lines: NDArray[np.object_], links: NDArray[np.float64], given: Polygon | None
 ) -> Polygon | None:
     """Largest connected region that lines and links close in; None if there is none."""
-    noded = shapely.union_all([*lines, *(LineString(link) for link in links)])
+    ways = np.array(shapely.linestrings(links), dtype=np.object_)
+    noded = shapely.union_all(np.concatenate([lines, ways]))
     faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
     if given is not None:
         covered = shapely.area(shapely.intersection(faces, given))
@@ -137,75 +141,17 @@ def _length_inside(lines: NDArray[np.object_], region: Polygon) -> float:
     return float(shapely.length(lines[shapely.covers(wide, lines)]).sum())
 
 
-def _links(pieces: Sequence[Wall], lines: NDArray[np.object_], gap_m: float) -> list[Link]:
-    """Short ways from each loose end: straight on, to the nearest wall, to other loose ends."""
-    tree = shapely.STRtree(lines)
-    loose = _loose_ends(pieces, tree)
-    links: list[Link] = []
-    for i, here, ahead in loose:
-        targets = [q for _, q, _ in loose if q != here and dist(here, q) <= gap_m]
-        near = [j for j in tree.query(Point(here), "dwithin", distance=gap_m).tolist() if j != i]
-        ray = LineString([here, (here[0] + gap_m * ahead[0], here[1] + gap_m * ahead[1])])
-        others: BaseGeometry = MultiLineString([lines[j] for j in near])
-        if near:
-            targets.append(_nearest(others, here))
-            targets += [
-                _nearest(hit, here) for hit in [ray.intersection(others)] if not hit.is_empty
-            ]
-        links += [(here, to) for to in targets if _free(here, to, others)]
-    return links + _links_between_parts(lines, gap_m)
-
-
-def _links_between_parts(lines: NDArray[np.object_], gap_m: float) -> list[Link]:
-    """Shortest ways between walls that hang together and others, such as pillars."""
-    parts = shapely.get_parts(shapely.union_all([line.buffer(TOLERANCE_M) for line in lines]))
-    near = shapely.STRtree(parts).query(parts, predicate="dwithin", distance=gap_m)
-    links: list[Link] = []
-    for i, j in near[:, near[0] < near[1]].T.tolist():
-        ends = shapely.get_coordinates(shapely.shortest_line(parts[i], parts[j]))
-        here, to = (_nearest(MultiLineString(list(lines)), tidy_point(x, y)) for x, y in ends)
-        links.append((here, to))
-    return links
-
-
-def _loose_ends(
-    pieces: Sequence[Wall], tree: shapely.STRtree
-) -> list[tuple[int, tuple[float, float], tuple[float, float]]]:
-    """Ends that touch no other wall: the wall's index, the end, and the direction outwards."""
-    loose: list[tuple[int, tuple[float, float], tuple[float, float]]] = []
-    for i, wall in enumerate(pieces):
-        ux, uy = direction(wall)
-        for end, ahead in ((wall.start, (-ux, -uy)), (wall.end, (ux, uy))):
-            if len(tree.query(Point(end), "dwithin", distance=2 * TOLERANCE_M)) == 1:
-                loose.append((i, end, ahead))
-    return loose
-
-
-def _nearest(geometry: BaseGeometry, here: tuple[float, float]) -> tuple[float, float]:
-    x, y = shapely.get_coordinates(shapely.shortest_line(geometry, Point(here)))[0]
-    return tidy_point(x, y)
-
-
-def _free(here: tuple[float, float], to: tuple[float, float], walls: BaseGeometry) -> bool:
-    """Whether a link has a length and no wall in its way."""
-    length_m = dist(here, to)
-    if length_m <= 10 * TOLERANCE_M:
-        return False
-    inner = shapely.line_interpolate_point(LineString([here, to]), [0.01, 0.99], normalized=True)
-    return not LineString(list(inner)).intersects(walls)
-
-
-def _like_nearest(
-    pieces: Sequence[Wall], start: tuple[float, float], end: tuple[float, float]
-) -> Wall:
-    """Make a wall that looks like the longest of those at the ends of the link."""
-    touching = [
-        wall
-        for wall in pieces
-        if min(dist(a, b) for a in (wall.start, wall.end) for b in (start, end)) < 1e-5
-    ]
-    like = max(touching or pieces, key=lambda wall: wall.length_m)
-    return replace(like, start=start, end=end, openings=())
+def _closing(pieces: Sequence[Wall], links: Sequence[Link]) -> list[Wall]:
+    """Walls on links, that look like the longest of those at their ends."""
+    tree = shapely.STRtree(wall_lines(pieces))
+    longest = max(pieces, key=lambda wall: wall.length_m)
+    closing: list[Wall] = []
+    for start, end in links:
+        near = tree.query(MultiPoint([start, end]), "dwithin", distance=_ON_EDGE_M).tolist()
+        touching = [pieces[i] for i in near]
+        like = max(touching or [longest], key=lambda wall: wall.length_m)
+        closing.append(replace(like, start=start, end=end, openings=()))
+    return closing
 
 
 def _inside(pieces: Sequence[Wall], outline: Polygon, changes: list[Change]) -> list[Wall]:

@@ -17,6 +17,7 @@ _DOUBLE_DIRECTION = np.cos(np.radians(12.0))
 _DOUBLE_SHARE = 0.5  # of an axis beside a longer one, within the wall, from which it is a double
 _OFFSET_SHARE = 0.4  # of the thicker wall's thickness by which axes of one line may lie apart
 _LIKE = 1.4  # ratio of thicknesses up to which two stretches of a line are one wall
+_ACROSS_M = 1.0  # as thick as a wall across, between a short stretch and the one it belongs to
 _SHORT = 2.0  # times its thickness, a stretch takes on the thickness of its neighbour
 
 
@@ -152,29 +153,44 @@ def _merged(stretches: list[_Stretch], is_solid: Callable[[float, float], bool])
 
     In this order, because a long wall is often made of pieces that are short one by one.
     """
-    return _joined(_joined(stretches, is_solid, _same_thickness), is_solid, _alike)
+    same = _joined(stretches, is_solid, _same_thickness, np.inf)
+    return _touching(_joined(same, is_solid, _alike, _ACROSS_M), is_solid)
 
 
 def _joined(
     stretches: list[_Stretch],
     is_solid: Callable[[float, float], bool],
     alike: Callable[[_Stretch, _Stretch], bool],
+    max_gap_m: float,
 ) -> list[_Stretch]:
-    """Join neighbours that are alike; let the others touch where there is solid between them."""
+    """Join neighbours that are alike and have only solid between them."""
     done = stretches[:1]
     for following in stretches[1:]:
         last = done[-1]
         if following.high <= last.high:
             continue
-        if not is_solid(last.high, following.low):
-            done.append(following)
-        elif alike(last, following):
+        near = following.low - last.high <= max_gap_m
+        if near and alike(last, following) and is_solid(last.high, following.low):
             like = max(last, following, key=lambda part: (not part.is_filling, part.length_m))
             done[-1] = replace(like, low=last.low, high=following.high)
         else:
+            done.append(following)
+    return done
+
+
+def _touching(
+    stretches: list[_Stretch], is_solid: Callable[[float, float], bool]
+) -> list[_Stretch]:
+    """Let neighbours touch half-way, where there is solid between them."""
+    done = stretches[:1]
+    for following in stretches[1:]:
+        last = done[-1]
+        near = following.low - last.high <= _ACROSS_M
+        if near and is_solid(last.high, following.low):
             between = (last.high + following.low) / 2
             done[-1] = replace(last, high=between)
-            done.append(replace(following, low=between))
+            following = replace(following, low=between)
+        done.append(following)
     return done
 
 

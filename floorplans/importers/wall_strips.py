@@ -192,13 +192,15 @@ def _bent(a: Strip, b: Strip) -> bool:
 
 def _singles(faces: list[_Face], strips: list[Strip]) -> Segments:
     """Stretches without a partner that are no part of a wall already, (n, 2, 2)."""
-    walls = shapely.union_all([s.area(s.thickness_m + _CAP_M).buffer(_CAP_M) for s in strips])
+    walls = [strip.area(strip.thickness_m + _CAP_M).buffer(_CAP_M) for strip in strips]
+    tree = shapely.STRtree(walls)
     found: list[list[tuple[float, float]]] = []
     for face in faces:
         for low, high in face.free(0.0, face.length):
             part = _part(face, low, high)
             line = LineString([part.start, part.start + part.along * part.length])
-            for rest in shapely.get_parts(line.difference(walls)):
+            near = [walls[i] for i in tree.query(line, "intersects").tolist()]
+            for rest in shapely.get_parts(line.difference(shapely.union_all(near))):
                 if rest.length >= min(_MIN_SINGLE_M, face.length - _CAP_M) and rest.length > _CAP_M:
                     found.append([(float(x), float(y)) for x, y in rest.coords])
     return np.array(found, dtype=np.float64).reshape(-1, 2, 2)

@@ -14,7 +14,7 @@ from ezdxf.document import Drawing
 from shapely.geometry import LineString, Point
 
 from floorplans import FloorPlan, PlanError
-from floorplans.importers import Imported, ImportOptions, dxf_drawing, import_plan
+from floorplans.importers import Imported, ImportOptions, dxf, dxf_drawing, import_plan
 from floorplans.importers.dxf_curves import chord_step_deg
 from floorplans.importers.layer_names import Meaning, meaning_of
 from floorplans.walls import Opening, Wall
@@ -311,6 +311,13 @@ def test_blocks_that_explode_without_end_are_refused_before_work(tmp_path: Path)
 def test_too_many_objects_are_refused_before_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(dxf_drawing, "MAX_RECORDS", 50)
     assert "objects, more than 50" in refusal(draw.flat_of_bodies(), tmp_path)
+
+
+def test_more_lines_than_a_storey_has_are_refused_before_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(dxf, "MAX_LINES", 20)
+    assert "hold 32 lines, more than the 20" in refusal(draw.flat_of_bodies(), tmp_path)
 
 
 def test_a_block_within_itself_does_no_harm(tmp_path: Path):

@@ -1,0 +1,178 @@
+"""Short ways over the gaps of walls, one of which may be where the outline goes on."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from floorplans.walls import TOLERANCE_M
+
+_NEAREST_ENDS = 4
+_NEAREST_WALLS = 8
+_SPREAD = np.cos(np.pi / 4)
+_CHUNK = 500
+
+Segments = NDArray[np.float64]
+Lines = NDArray[np.object_]
+
+
+def gap_links(lines: Lines, max_gap_m: float) -> Segments:
+    """Ways from loose ends, and between walls that hang together, with no wall in between.
+
+    From each end that touches no other wall they go to the nearest such ends, to the nearest wall,
+    and straight on; from walls that hang together, such as a pillar, to the nearest others.
+
+    Parameters
+    ----------
+    lines : (n,) shapely lines
+        Walls that meet at their ends only.
+    max_gap_m : float
+        No way is longer [m].
+
+    Returns
+    -------
+    (n, 2, 2) float64
+        Way, end, and (x, y) [m].
+    """
+    tree = shapely.STRtree(lines)
+    owner, ends, ahead = _loose_ends(lines, tree)
+    links = np.concatenate(
+        [
+            _to_ends(ends, max_gap_m),
+            _to_walls(owner, ends, lines, tree, max_gap_m),
+            _straight_on(owner, ends, ahead * max_gap_m, lines, tree),
+            _between_parts(lines, tree, max_gap_m),
+        ]
+    )
+    lengths = link_lengths(links)
+    links = links[(lengths > 10 * TOLERANCE_M) & (lengths <= max_gap_m)]
+    return links[_free(links, tree)]
+
+
+def link_lengths(links: Segments) -> NDArray[np.float64]:
+    """Length of each way [m], (n,)."""
+    steps = links[:, 1] - links[:, 0]
+    return np.hypot(steps[:, 0], steps[:, 1])
+
+
+def _loose_ends(
+    lines: Lines, tree: shapely.STRtree
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Ends that touch no other wall: the wall's index, the end, and the way on, of length 1."""
+    ends = shapely.get_coordinates(lines).reshape(-1, 2)
+    others = ends.reshape(-1, 2, 2)[:, ::-1].reshape(-1, 2)
+    touching, _ = tree.query(_points(ends), "dwithin", distance=2 * TOLERANCE_M)
+    loose = np.flatnonzero(np.bincount(touching, minlength=len(ends)) == 1)
+    ahead = ends[loose] - others[loose]
+    ahead /= np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
+    return loose // 2, ends[loose], ahead
+
+
+def _to_ends(ends: NDArray[np.float64], max_gap_m: float) -> Segments:
+    """Ways between loose ends, each to a few of the nearest."""
+    if len(ends) < 2:
+        return np.empty((0, 2, 2))
+    k = min(_NEAREST_ENDS + 1, len(ends))
+    _, near = KDTree(ends).query(ends, k=k, distance_upper_bound=max_gap_m)
+    here, rank = np.nonzero(np.asarray(near) < len(ends))
+    there = np.asarray(near)[here, rank]
+    return np.stack([ends[here], ends[there]], axis=1)[here < there]
+
+
+def _to_walls(
+    owner: NDArray[np.int64],
+    ends: NDArray[np.float64],
+    lines: Lines,
+    tree: shapely.STRtree,
+    max_gap_m: float,
+) -> Segments:
+    """Way from each loose end to the nearest wall that is not its own."""
+    links = [np.empty((0, 2, 2))]
+    for begin in range(0, len(ends), _CHUNK):
+        points = _points(ends[begin : begin + _CHUNK])
+        which, wall = tree.query(points, "dwithin", distance=max_gap_m)
+        other = wall != owner[begin + which]
+        which, wall = which[other], wall[other]
+        best = _first_of_each(which, shapely.distance(points[which], lines[wall]))
+        ways = shapely.shortest_line(points[which[best]], lines[wall[best]])
+        links.append(shapely.get_coordinates(ways).reshape(-1, 2, 2))
+    return np.concatenate(links)
+
+
+def _straight_on(
+    owner: NDArray[np.int64],
+    ends: NDArray[np.float64],
+    onward: NDArray[np.float64],
+    lines: Lines,
+    tree: shapely.STRtree,
+) -> Segments:
+    """Way from each loose end straight on to the first wall."""
+    rays = np.array(shapely.linestrings(np.stack([ends, ends + onward], axis=1)), dtype=np.object_)
+    which, wall = tree.query(rays, "intersects")
+    other = wall != owner[which]
+    which, wall = which[other], wall[other]
+    points = _points(ends)[which]
+    ways = np.array(
+        shapely.shortest_line(points, shapely.intersection(rays[which], lines[wall])),
+        dtype=np.object_,
+    )
+    best = _first_of_each(which, shapely.length(ways))
+    return shapely.get_coordinates(ways[best]).reshape(-1, 2, 2)
+
+
+def _between_parts(lines: Lines, tree: shapely.STRtree, max_gap_m: float) -> Segments:
+    """Ways from walls that hang together to a few of the nearest that do not hang with them."""
+    touching = tree.query(lines, "dwithin", distance=2 * TOLERANCE_M)
+    graph = coo_array((np.ones(touching.shape[1]), tuple(touching)), shape=(len(lines),) * 2)
+    _, labels = connected_components(graph, directed=False)
+    a, b = tree.query(lines, "dwithin", distance=max_gap_m)
+    apart = labels[a] != labels[b]
+    a, b = a[apart], b[apart]
+    distance_m = shapely.distance(lines[a], lines[b])
+    best = _first_of_each(labels[a] * len(lines) + b, distance_m)
+    part, rank_by = labels[a[best]], distance_m[best]
+    order = np.lexsort((rank_by, part))
+    rank = np.arange(len(order)) - np.searchsorted(part[order], part[order])
+    few = best[order[rank < _NEAREST_WALLS]]
+    ways = shapely.get_coordinates(shapely.shortest_line(lines[a[few]], lines[b[few]]))
+    return _spread(labels[a[few]], ways.reshape(-1, 2, 2))
+
+
+def _spread(part: NDArray[np.int64], ways: Segments) -> Segments:
+    """Ways that leave their part in directions well apart, the shortest of each direction."""
+    lengths = link_lengths(ways)
+    kept: dict[int, list[NDArray[np.float64]]] = {}
+    chosen: list[int] = []
+    for i in np.argsort(lengths, kind="stable").tolist():
+        along = (ways[i, 1] - ways[i, 0]) / max(float(lengths[i]), TOLERANCE_M)
+        directions = kept.setdefault(int(part[i]), [])
+        if all(along @ other < _SPREAD for other in directions):
+            directions.append(along)
+            chosen.append(i)
+    return ways[chosen]
+
+
+def _first_of_each(which: NDArray[np.int64], value: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Indices of the smallest value of each number in `which`."""
+    order = np.lexsort((value, which))
+    _, first = np.unique(which[order], return_index=True)
+    return order[first]
+
+
+def _free(links: Segments, tree: shapely.STRtree) -> NDArray[np.bool_]:
+    """Which ways have no wall between their ends."""
+    step = 0.01 * (links[:, 1] - links[:, 0])
+    inner = np.stack([links[:, 0] + step, links[:, 1] - step], axis=1)
+    free = np.ones(len(links), dtype=np.bool_)
+    free[tree.query(np.array(shapely.linestrings(inner), dtype=np.object_), "intersects")[0]] = (
+        False
+    )
+    return free
+
+
+def _points(ends: NDArray[np.float64]) -> Lines:
+    return np.array(shapely.points(ends), dtype=np.object_)
