@@ -172,7 +172,7 @@ def bounced(
     return upright, level, done
 
 
-@jit(inline=True)
+@jit(inner=True)
 def solid_at(view: PlanView, profile: int, z: float) -> int:
     """Material of a profile at or next to a height where a leg is reflected."""
     material = material_at(view, profile, z)
@@ -180,6 +180,33 @@ def solid_at(view: PlanView, profile: int, z: float) -> int:
         above = material_at(view, profile, z + NUDGE_M)
         material = above if above >= 0 else material_at(view, profile, z - NUDGE_M)
     return material
+
+
+@jit(inner=True, fast=True)
+def let_through(
+    view: PlanView,
+    radio: Radio,
+    leg: Leg,
+    k: int,
+    ray: Ray,
+    z_root: float,
+    field: tuple[complex, complex, int],
+) -> tuple[complex, complex, int]:
+    """Field behind item k of a leg, which it passes (docs/theory.md, eqs. 28-30)."""
+    upright, level, done = field
+    slab = leg.marks[k, WHAT]
+    z = z_root + ray.slope * leg.items[k, DISTANCE]
+    if leg.marks[k, KIND] == PASS_PARTIAL:
+        slab = material_at(view, slab, folded(z, radio.height))
+        if slab < 0:
+            return field
+    upright, level, done = bounced(ray, z / radio.height, upright, level, done)
+    normal = leg.items[k, NORMAL]
+    tm, mix = slab_lookup(radio.through, slab, abs(normal) * ray.cos_el)
+    a = leg.items[k, SKEW]
+    b = normal * ray.sin_el if done & 1 else -normal * ray.sin_el
+    t = (upright * a + level * b) * mix
+    return tm * upright + t * a, tm * level + t * b, done
 
 
 @jit(inline=True, fast=True)
@@ -215,32 +242,25 @@ def carried(
     per_height = 1.0 / radio.height
     for k in range(n):
         kind, slab = leg.marks[k, KIND], leg.marks[k, WHAT]
-        passes = kind >= PASS_PARTIAL
-        if kind == PASS_PARTIAL and len(radio.through) == 0:
+        if kind >= PASS_PARTIAL:
+            if len(radio.through) > 0:
+                upright, level, done = let_through(
+                    view, radio, leg, k, ray, z_root, (upright, level, done)
+                )
             continue
         z = z_root + ray.slope * leg.items[k, DISTANCE]
         upright, level, done = bounced(ray, z * per_height, upright, level, done)
-        if kind == PASS_PARTIAL:
-            slab = material_at(view, slab, folded(z, radio.height))
-            if slab < 0:
-                continue
-        elif kind == REFLECT_PARTIAL:
+        if kind == REFLECT_PARTIAL:
             slab = solid_at(view, slab, folded(z, radio.height))
         normal = leg.items[k, NORMAL]
-        tm, mix = slab_lookup(
-            radio.through if passes else radio.slabs, slab, abs(normal) * ray.cos_el
-        )
+        tm, mix = slab_lookup(radio.slabs, slab, abs(normal) * ray.cos_el)
         a = leg.items[k, SKEW]
         b = normal * ray.sin_el
         if not done & 1:
             b = -b
         t = (upright * a + level * b) * mix
-        if passes:
-            upright = tm * upright + t * a
-            level = tm * level + t * b
-        else:
-            upright = t * a - tm * upright
-            level = tm * level - t * b
+        upright = t * a - tm * upright
+        level = tm * level - t * b
     return bounced(ray, (z_root + ray.slope * length) * per_height, upright, level, done)
 
 

@@ -137,6 +137,49 @@ def straight_line(trace: Trace, r: int) -> float:
     return math.sqrt(x * x + y * y + z * z)
 
 
+class Bundle(NamedTuple):
+    """Sums over paths that arrive at a receiver from one direction; see `Sums`."""
+
+    field: complex
+    power: float
+    detour: float
+    detour_squared: float
+    strongest: float
+
+
+@jit(inline=True)
+def no_paths() -> Bundle:
+    """Sums of no paths."""
+    return Bundle(0j, 0.0, 0.0, 0.0, 0.0)
+
+
+@jit(inline=True, fast=True)
+def with_path(bundle: Bundle, gain: complex, detour: float, share: float) -> Bundle:
+    """Sums with one path more: its gain, its detour [m] and its share."""
+    size = gain.real * gain.real + gain.imag * gain.imag
+    counted = size * share
+    return Bundle(
+        bundle.field + gain * share,
+        bundle.power + counted,
+        bundle.detour + counted * detour,
+        bundle.detour_squared + counted * detour * detour,
+        max(bundle.strongest, size),
+    )
+
+
+@jit(inline=True, fast=True)
+def add_bundle(sums: Sums, r: int, bundle: Bundle, direction: tuple[float, float]) -> None:
+    """Add paths that arrive from a direction, cosine and sine of its azimuth, to the sums."""
+    sums.field[r] += bundle.field
+    sums.power[r] += bundle.power
+    moments = sums.moments[r]
+    moments[STRONGEST] = max(moments[STRONGEST], bundle.strongest)
+    moments[DETOUR] += bundle.detour
+    moments[DETOUR_SQUARED] += bundle.detour_squared
+    moments[COSINE] += bundle.power * direction[0]
+    moments[SINE] += bundle.power * direction[1]
+
+
 @jit(inline=True, fast=True)
 def arrived(
     sums: Sums,
@@ -157,17 +200,8 @@ def arrived(
         Cosine and sine of the azimuth it arrives at.
     """
     gain, detour, share = path
-    size = gain.real * gain.real + gain.imag * gain.imag
-    sums.field[r] += gain * share
     sums.n_paths[r, order] += share
-    moments = sums.moments[r]
-    moments[STRONGEST] = max(moments[STRONGEST], size)
-    size *= share
-    sums.power[r] += size
-    moments[DETOUR] += size * detour
-    moments[DETOUR_SQUARED] += size * detour * detour
-    moments[COSINE] += size * direction[0]
-    moments[SINE] += size * direction[1]
+    add_bundle(sums, r, with_path(no_paths(), gain, detour, share), direction)
 
 
 @jit(inner=True)

@@ -18,12 +18,14 @@ from raytrace.kernels.tracing import (
     Record,
     Sums,
     Trace,
-    arrived,
+    add_bundle,
     free_space,
     leave_out,
     leg_bound,
+    no_paths,
     recorded,
     straight_line,
+    with_path,
 )
 from raytrace.kernels.unfolding import (
     MISFIT,
@@ -84,6 +86,8 @@ class LegsIn(NamedTuple):
         (n, 2) horizontal direction at the source.
     bound
         (n,) see `tracing.leg_bound`.
+    constrained
+        (n,) whether heights matter to it, see `unfolding.is_constrained`.
     angles
         (n, 6) see `write_angles`.
     items, marks
@@ -97,6 +101,7 @@ class LegsIn(NamedTuple):
     share: Floats
     departure: Floats
     bound: Floats
+    constrained: NDArray[np.bool_]
     angles: Floats
     items: Floats
     marks: Ints
@@ -154,6 +159,7 @@ def legs_to_edge(
         np.empty(n_beams),
         np.empty((n_beams, 2)),
         np.empty(n_beams),
+        np.empty(n_beams, np.bool_),
         np.empty((n_beams, 6)),
         np.empty((n_beams, most, 5)),
         np.empty((n_beams, most, 2), np.int64),
@@ -170,6 +176,7 @@ def legs_to_edge(
         legs.departure[kept, 0], legs.departure[kept, 1] = ux, uy
         legs.order[kept], legs.n_items[kept] = tree.link[i, ORDER], n
         legs.length[kept], legs.phi[kept], legs.share[kept] = length, phi, share[b]
+        legs.constrained[kept] = is_constrained(leg, n)
         legs.bound[kept] = leg_bound(trace, leg, n, length, tree.link[i, ORDER])
         write_angles(phi, edge.wedge.n, legs.angles[kept])
         kept += 1
@@ -181,6 +188,7 @@ def legs_to_edge(
         legs.share[:kept],
         legs.departure[:kept],
         legs.bound[:kept],
+        legs.constrained[:kept],
         legs.angles[:kept],
         legs.items[:kept],
         legs.marks[:kept],
@@ -200,6 +208,8 @@ class Pair(NamedTuple):
         The two directions at the wedge.
     departure, arriving
         Horizontal directions in which it leaves the source, and which it comes from.
+    constrained_in, constrained_out
+        Whether heights matter to the legs, see `unfolding.is_constrained`.
     """
 
     leg_in: Leg
@@ -211,6 +221,8 @@ class Pair(NamedTuple):
     terms: WedgeTerms
     departure: tuple[float, float]
     arriving: tuple[float, float]
+    constrained_in: bool
+    constrained_out: bool
 
 
 @jit(inline=True)
@@ -224,12 +236,18 @@ def pair_met(trace: Trace, edge: Edge, pair: Pair, slope: float, nudge: float) -
     if not edge.z_low < z_edge < edge.z_high:
         return MISFIT
     through = 0
-    if is_constrained(pair.leg_in, pair.n_in):
+    if pair.constrained_in:
         through = walls_met(trace.plan, pair.leg_in, pair.n_in, z_root, slope, height, nudge)
-    if through >= 0 and is_constrained(pair.leg_out, pair.n_out):
+    if through >= 0 and pair.constrained_out:
         behind = walls_met(trace.plan, pair.leg_out, pair.n_out, z, slope, height, nudge)
         through = through + behind if behind >= 0 else behind
     return through
+
+
+@jit(inner=True)
+def met_beside(trace: Trace, edge: Edge, pair: Pair, slope: float, nudge: float) -> int:
+    """`pair_met`, compiled apart: few paths touch a rim."""
+    return pair_met(trace, edge, pair, slope, nudge)
 
 
 @jit(inline=True)
@@ -239,8 +257,9 @@ def pair_fitting(trace: Trace, edge: Edge, pair: Pair, slope: float) -> float:
     if met != TOUCHING:
         return 1.0 if 0 <= met <= trace.max_walls else 0.0
     share = 0.0
-    for nudge in (-NUDGE_M, NUDGE_M):
-        if 0 <= pair_met(trace, edge, pair, slope, nudge) <= trace.max_walls:
+    for side in range(2):
+        met = met_beside(trace, edge, pair, slope, NUDGE_M if side else -NUDGE_M)
+        if 0 <= met <= trace.max_walls:
             share += 0.5
     return share
 
@@ -248,7 +267,7 @@ def pair_fitting(trace: Trace, edge: Edge, pair: Pair, slope: float) -> float:
 @jit(inner=True)
 def shines(trace: Trace, edge: Edge, pair: Pair, slope: float) -> bool:
     """Whether a path may go through one wall more."""
-    return 0 <= pair_met(trace, edge, pair, slope, NUDGE_M) < trace.max_walls
+    return 0 <= met_beside(trace, edge, pair, slope, NUDGE_M) < trace.max_walls
 
 
 @jit(inline=True, fast=True)
@@ -355,6 +374,8 @@ def sum_upright_edge(
         if trace.least_power > 0.0:
             bound_out = leg_bound(trace, leg, n, length, tree.link[i, ORDER])
         tie = 0.5 * TIE_M / length
+        constrained_out = is_constrained(leg, n)
+        bundle = no_paths()
         for p in range(len(legs_in.order)):
             order = tree.link[i, ORDER] + legs_in.order[p]
             if order > trace.max_order:
@@ -365,7 +386,7 @@ def sum_upright_edge(
             departure = legs_in.departure[p, 0], legs_in.departure[p, 1]
             pair = Pair(
                 leg_in, legs_in.n_items[p], legs_in.length[p], leg, n, length, terms, departure,
-                arriving,
+                arriving, legs_in.constrained[p], constrained_out,
             )  # fmt: skip
             share_here = legs_in.share[p] * hits.share[hit]
             if trace.least_power > 0.0:
@@ -386,5 +407,7 @@ def sum_upright_edge(
                 through = trace.max_walls > 0 and shines(trace, edge, pair, slope)
                 gain = pair_gain(trace, edge, pair, slope, bounces, through) * common
                 detour = math.sqrt(total * total + rise * rise) - straight
-                arrived(sums, r, order + bounces, (gain, detour, share), arriving)
+                sums.n_paths[r, order + bounces] += share
+                bundle = with_path(bundle, gain, detour, share)
                 recorded(record, hit, p, (-1, k), gain, share)
+        add_bundle(sums, r, bundle, arriving)
