@@ -17,8 +17,8 @@ from raytrace.kernels.path_points import level_points, reflection_points, uprigh
 from raytrace.kernels.plan_view import TIE_M
 from raytrace.kernels.reflections import sum_reflections
 from raytrace.kernels.strips import StripTree, edge_frame, grow_strips, hit_from_strip
-from raytrace.kernels.tracing import Record, Sums
-from raytrace.kernels.unfolding import most_items, new_leg
+from raytrace.kernels.tracing import Record, Sums, new_room
+from raytrace.kernels.unfolding import most_items
 from raytrace.kernels.upright_edges import Edge, LegsIn, legs_to_edge, sum_upright_edge
 from raytrace.kernels.utd import new_wedge
 from raytrace.preparing import Tracing
@@ -56,8 +56,9 @@ class Reflections:
     def add_to(self, sums: Sums, record: Record) -> None:
         """See `Family`."""
         tree = self._tracing.tree
-        leg = new_leg(most_items(tree.link))
-        sum_reflections(self._tracing.trace, tree, self._hits, leg, sums, record)
+        trace = self._tracing.trace
+        room = new_room(trace.max_order, most_items(tree.link))
+        sum_reflections(trace, tree, self._hits, room, sums, record)
 
     def receivers_of(self, record: Record) -> NDArray[np.int64]:
         """See `Family`."""
@@ -107,8 +108,9 @@ class OverUprightEdge:
         """See `Family`."""
         if len(self._legs_in.order):
             legs, (tree, hits) = self._legs_in, self._lit
-            work = (new_leg(most_items(tree.link)), np.empty(6))
-            sum_upright_edge(self._tracing.trace, self._edge, legs, tree, hits, work, sums, record)
+            trace = self._tracing.trace
+            room = new_room(trace.max_order, most_items(tree.link))
+            sum_upright_edge(trace, self._edge, legs, tree, hits, room, sums, record)
 
     def receivers_of(self, record: Record) -> NDArray[np.int64]:
         """See `Family`."""
@@ -128,7 +130,7 @@ class OverLevelEdge:
         self._near, self._far = edge.plan_edges[side], edge.plan_edges[1 - side]
         self._rim = Rim(
             edge_frame(tracing.trace.plan, self._near), edge.z, 1.0 if edge.wall_above else -1.0,
-            edge.material,
+            new_wedge(2.0, edge.material, edge.material),
         )  # fmt: skip
 
     @cached_property
@@ -168,8 +170,9 @@ class OverLevelEdge:
         """See `Family`."""
         if len(self._legs_in.order):
             source, (strips, lit) = (self._tracing.tree, self._legs_in), self._lit
-            work = new_work(self._tracing.tree, strips)
-            sum_level_edge(self._tracing.trace, self._rim, source, strips, lit, work, sums, record)
+            trace = self._tracing.trace
+            work = new_work(trace.max_order, self._tracing.tree, strips)
+            sum_level_edge(trace, self._rim, source, strips, lit, work, sums, record)
 
     def receivers_of(self, record: Record) -> NDArray[np.int64]:
         """See `Family`."""

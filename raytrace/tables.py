@@ -42,11 +42,12 @@ def make_radio(
         height=height_m,
         floor=floor,
         ceiling=ceiling,
-        slabs=slab_tables(slabs, transmitter.frequency_hz),
-        through=transmission_tables(slabs, transmitter.frequency_hz)
+        slab_rows=SLAB_TABLE_STEPS + 2,
+        slabs=slab_tables(slabs, transmitter.frequency_hz).reshape(-1, 4),
+        through=transmission_tables(slabs, transmitter.frequency_hz).reshape(-1, 4)
         if through_walls
-        else np.empty((0, 2, 4)),
-        highest=highest_reflections(slabs, transmitter.frequency_hz),
+        else np.empty((0, 4)),
+        highest=highest_reflections(slabs, transmitter.frequency_hz).ravel(),
         transition=transition_table(),
         cis=np.column_stack([np.cos(turn), np.sin(turn)]),
         **_antennas(transmitter.antenna, receive_antenna or HalfWaveDipole()),
@@ -60,13 +61,18 @@ def _antennas(transmit: Antenna, receive: Antenna) -> dict[str, Any]:
         return {
             "transmit": tables[0],
             "receive": tables[1],
-            "patterns": np.empty((0, 2, 2, 2), np.complex128),
+            "patterns": (np.empty((0, 4)), np.empty((0, 4))),
+            "azimuths": 1,
             "peak": float(np.prod([np.max(t**2) for t in tables])),
         }
-    patterns = np.stack([np.stack(antenna_tables(a), axis=-1) for a in (transmit, receive)])
-    unused = np.zeros(2)
-    peak = float(np.prod((np.abs(patterns) ** 2).sum(axis=-1).max(axis=(1, 2))))
-    return {"transmit": unused, "receive": unused, "patterns": patterns, "peak": peak}
+    found = [np.stack(antenna_tables(a), axis=-1) for a in (transmit, receive)]
+    return {
+        "transmit": np.zeros(2),
+        "receive": np.zeros(2),
+        "patterns": tuple(np.ascontiguousarray(p).view(np.float64).reshape(-1, 4) for p in found),
+        "azimuths": found[0].shape[1],
+        "peak": float(np.prod([(np.abs(p) ** 2).sum(axis=-1).max() for p in found])),
+    }
 
 
 def antenna_table(antenna: Antenna) -> Floats:
@@ -97,17 +103,3 @@ def transition_table() -> Floats:
     tail = np.sqrt(np.pi / 2.0) * ((0.5 - cosine) - 1j * (0.5 - sine))
     ratio = 2j * np.exp(1j * s**2) * tail
     return np.column_stack([ratio.real, ratio.imag])
-
-
-def wedge_angles(phi: Floats, n: float) -> Floats:
-    """Functions (len(phi), 6) of the angles from the o-face [rad] that the terms are made of."""
-    return np.column_stack(
-        [
-            np.cos(phi / 2),
-            np.sin(phi / 2),
-            np.cos(phi / (2 * n)),
-            np.sin(phi / (2 * n)),
-            np.sqrt(np.abs(np.sin(phi))),
-            np.sqrt(np.abs(np.sin(n * np.pi - phi))),
-        ]
-    )

@@ -14,6 +14,8 @@ from typing import Any, TypeVar
 import numba
 from numba.core import config
 
+from raytrace.kernels import vectors as vectors  # numba is to know them
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 FAST = {"nsz", "arcp", "contract", "afn"}

@@ -2,7 +2,8 @@
 
 A ray of direction (u_x cos_el, u_y cos_el, sin_el) has the polarisations `upright`, along
 tau = (z - (z . s) s) / cos_el, and `level`, along psi = z x s / cos_el. Floor and ceiling leave
-them apart; a wall mixes them by its plan-view angles alone (docs/theory.md, eqs. 10-13).
+them apart; a wall mixes them by its plan-view angles alone (docs/theory.md, eqs. 10-13). Eight
+rays that meet the same walls are carried side by side.
 """
 
 import math
@@ -12,7 +13,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.plan_view import Floats, PlanView, folded, material_at
+from raytrace.kernels.lanes import (
+    ComplexLanes,
+    Lanes,
+    Mask,
+    absolute,
+    any_of,
+    complex_of,
+    copysign,
+    floor,
+    gather2,
+    gather_pairs1,
+    gather_pairs2,
+    gather_pairs4,
+    imag_of,
+    lanes_of,
+    load,
+    maximum,
+    minimum,
+    real_of,
+    sqrt,
+    where,
+    where_complex,
+)
+from raytrace.kernels.plan_view import Floats, PlanView
 from raytrace.kernels.unfolding import (
     DISTANCE,
     KIND,
@@ -23,6 +47,8 @@ from raytrace.kernels.unfolding import (
     SKEW,
     WHAT,
     Leg,
+    in_building,
+    materials_at,
 )
 
 
@@ -37,13 +63,16 @@ class Radio(NamedTuple):
         Of the ceiling [m].
     floor, ceiling
         Their slabs.
+    slab_rows
+        Rows of a slab in the tables that follow: steps of the cosine of incidence, and 2.
     slabs
-        (n_slabs, steps + 2, 4) see `raytrace.materials.slab_tables`.
+        (n_slabs * slab_rows, 4) see `raytrace.materials.slab_tables`.
     through
-        (n_slabs, steps + 2, 4) see `raytrace.materials.transmission_tables`; of no slab where
-        paths go through no wall.
+        (n_slabs * slab_rows, 4) see `raytrace.materials.transmission_tables`; empty where paths go
+        through no wall.
     highest
-        (n_slabs, steps + 2) largest reflected share of the power at a cosine of incidence or above.
+        (n_slabs * slab_rows,) largest reflected share of the power at a cosine of incidence or
+        above.
     peak
         Largest power gain of both antennas together.
     transition
@@ -54,14 +83,18 @@ class Radio(NamedTuple):
         (steps + 2,) antenna amplitudes over the direction's z component from -1 to 1, where both
         are the same all around and polarised upright.
     patterns
-        (2, n_elevations, n_azimuths, 2) of transmitter and receiver else, upright and level (see
-        `raytrace.antennas.antenna_tables`); empty where the above do.
+        (n_elevations * n_azimuths, 4) of transmitter and receiver else: real and imaginary parts,
+        upright and level, row by row of an elevation (see `raytrace.antennas.antenna_tables`); of
+        no row where the above do.
+    azimuths
+        How many azimuths patterns have.
     """
 
     wavelength: float
     height: float
     floor: int
     ceiling: int
+    slab_rows: int
     slabs: Floats
     through: Floats
     highest: Floats
@@ -70,87 +103,123 @@ class Radio(NamedTuple):
     cis: Floats
     transmit: Floats
     receive: Floats
-    patterns: NDArray[np.complex128]
+    patterns: tuple[Floats, Floats]
+    azimuths: int
 
 
 class Ray(NamedTuple):
-    """The heights of an unfolded leg.
+    """The heights of eight unfolded legs with as many bounces at floor and ceiling.
 
     Attributes
     ----------
     slope
         Growth of the unfolded height over horizontal distance.
+    stretch
+        Length over horizontal distance.
     cos_el, sin_el
-        Of the elevation at the root; sin_el changes its sign at every bounce.
-    first_tm, first_te, second_tm, second_te
-        Reflection coefficients of the first, third, ... and of the second, fourth, ... bounce.
+        Of the elevation at the root.
+    bounces
+        Reflections at floor and ceiling.
+    floor_tm, floor_te, ceiling_tm, ceiling_te
+        Their coefficients.
     """
 
-    slope: float
-    cos_el: float
-    sin_el: float
-    first_tm: complex
-    first_te: complex
-    second_tm: complex
-    second_te: complex
+    slope: Lanes
+    stretch: Lanes
+    cos_el: Lanes
+    sin_el: Lanes
+    bounces: int
+    floor_tm: ComplexLanes
+    floor_te: ComplexLanes
+    ceiling_tm: ComplexLanes
+    ceiling_te: ComplexLanes
+
+
+class Wave(NamedTuple):
+    """What travels along eight rays.
+
+    Attributes
+    ----------
+    upright, level
+        The field's polarisations.
+    rising
+        Sine of the elevation; it changes its sign at every bounce.
+    done
+        Number of bounces at floor and ceiling so far.
+    """
+
+    upright: ComplexLanes
+    level: ComplexLanes
+    rising: Lanes
+    done: Lanes
+
+
+@jit(inline=True)
+def steps_into(t: Lanes, steps: int) -> tuple[Lanes, Lanes]:
+    """Row and the rest of positions in a table of so many steps and a row more at its end."""
+    t = maximum(minimum(t, float(steps)), 0.0)
+    row = floor(t)
+    return row, t - row
 
 
 @jit(inline=True, fast=True)
-def slab_lookup(slabs: Floats, slab: int, cosine: float) -> tuple[complex, complex]:
-    """R_tm and (R_te + R_tm) / sin^2, or T_tm and (T_te - T_tm) / sin^2, of a slab."""
-    steps = slabs.shape[1] - 2
-    t = cosine * steps
-    k = min(max(int(t), 0), steps)
-    w = t - k
-    v = 1.0 - w
-    a, b = slabs[slab, k], slabs[slab, k + 1]
-    return complex(a[0] * v + b[0] * w, a[1] * v + b[1] * w), complex(
-        a[2] * v + b[2] * w, a[3] * v + b[3] * w
+def slab_lookup(
+    slabs: Floats, rows: int, slab: Lanes, cosine: Lanes
+) -> tuple[ComplexLanes, ComplexLanes]:
+    """R_tm and (R_te + R_tm) / sin^2, or T_tm and (T_te - T_tm) / sin^2, of slabs."""
+    row, w = steps_into(cosine * (rows - 2.0), rows - 2)
+    a, b, c, d, a2, b2, c2, d2 = gather_pairs4(slabs, slab * float(rows) + row)
+    return (
+        complex_of(a + (a2 - a) * w, b + (b2 - b) * w),
+        complex_of(c + (c2 - c) * w, d + (d2 - d) * w),
     )
 
 
 @jit(inline=True, fast=True)
-def both_reflections(slabs: Floats, slab: int, cosine: float) -> tuple[complex, complex]:
+def both_reflections(radio: Radio, slab: int, cosine: Lanes) -> tuple[ComplexLanes, ComplexLanes]:
     """R_tm and R_te of a slab."""
-    tm, mix = slab_lookup(slabs, slab, cosine)
+    tm, mix = slab_lookup(radio.slabs, radio.slab_rows, lanes_of(float(slab)), cosine)
     return tm, mix * (1.0 - cosine * cosine) - tm
 
 
 @jit(inline=True, fast=True)
-def interpolated(table: Floats, sine: float) -> float:
-    """Entry of a table over -1 to 1."""
-    t = (sine + 1.0) * (0.5 * (len(table) - 2))
-    k = min(max(int(t), 0), len(table) - 2)
-    return table[k] + (table[k + 1] - table[k]) * (t - k)
+def interpolated(table: Floats, sine: Lanes) -> Lanes:
+    """Entries of a table over -1 to 1."""
+    steps = len(table) - 2
+    row, w = steps_into((sine + 1.0) * (0.5 * steps), steps)
+    a, b = gather_pairs1(table, row)
+    return a + (b - a) * w
 
 
 @jit(inline=True, fast=True)
-def phasor(cis: Floats, turns: float) -> complex:
+def phasor(cis: Floats, turns: Lanes) -> ComplexLanes:
     """exp(-2 pi j turns), to 1e-12: a table and a short Taylor series."""
     steps = len(cis) - 1
-    t = (turns - math.floor(turns)) * steps
-    k = min(max(int(t), 0), steps)
-    d = (t - k) * (2.0 * math.pi / steps)
+    row, w = steps_into((turns - floor(turns)) * float(steps), steps)
+    d = w * (2.0 * math.pi / steps)
     d2 = d * d
     cosine = 1.0 - d2 * (0.5 - d2 * (1.0 / 24.0))
     sine = d * (1.0 - d2 * (1.0 / 6.0 - d2 * (1.0 / 120.0)))
-    c, s = cis[k, 0], cis[k, 1]
-    return complex(c * cosine - s * sine, -(s * cosine + c * sine))
+    c, s = gather2(cis, row)
+    return complex_of(c * cosine - s * sine, -(s * cosine + c * sine))
 
 
 @jit(inline=True, fast=True)
-def new_ray(radio: Radio, slope: float, bounces: int) -> Ray:
-    """Ray of a given slope; floor and ceiling are looked up only if it meets them."""
-    cos_el = 1.0 / math.sqrt(1.0 + slope * slope)
+def new_ray(radio: Radio, slope: Lanes, bounces: int) -> Ray:
+    """Rays of given slopes; floor and ceiling are looked up only if they meet them."""
+    stretch = sqrt(1.0 + slope * slope)
+    cos_el = 1.0 / stretch
     sin_el = slope * cos_el
-    if bounces == 0:
-        return Ray(slope, cos_el, sin_el, 0j, 0j, 0j, 0j)
-    first, second = (radio.ceiling, radio.floor) if slope > 0.0 else (radio.floor, radio.ceiling)
-    tm, te = both_reflections(radio.slabs, first, abs(sin_el))
-    if first == second:
-        return Ray(slope, cos_el, sin_el, tm, te, tm, te)
-    tm2, te2 = both_reflections(radio.slabs, second, abs(sin_el))
-    return Ray(slope, cos_el, sin_el, tm, te, tm2, te2)
+    floor_tm = floor_te = complex_of(lanes_of(0.0), 0.0)
+    ceiling_tm, ceiling_te = floor_tm, floor_te
+    if bounces > 0:
+        floor_tm, floor_te = both_reflections(radio, radio.floor, absolute(sin_el))
+        ceiling_tm, ceiling_te = floor_tm, floor_te
+        if radio.ceiling != radio.floor:
+            ceiling_tm, ceiling_te = both_reflections(radio, radio.ceiling, absolute(sin_el))
+    return Ray(
+        slope, stretch, cos_el, sin_el, bounces, floor_tm, floor_te, ceiling_tm, ceiling_te
+    )
 
 
 EDGE_OF_STOREY = 1e-9
@@ -158,55 +227,60 @@ EDGE_OF_STOREY = 1e-9
 
 
 @jit(inline=True, fast=True)
-def bounced(
-    ray: Ray, storeys: float, upright: complex, level: complex, done: int
-) -> tuple[complex, complex, int]:
-    """Apply the floor and ceiling reflections up to an unfolded height of that many storeys."""
-    due = abs(math.floor(storeys - math.copysign(EDGE_OF_STOREY, ray.slope)))
-    while done < due:
-        if done & 1:
-            upright, level = upright * ray.second_tm, level * ray.second_te
-        else:
-            upright, level = upright * ray.first_tm, level * ray.first_te
-        done += 1
-    return upright, level, done
+def bounced(ray: Ray, storeys: Lanes, wave: Wave) -> Wave:
+    """Apply the floor and ceiling reflections up to unfolded heights of so many storeys."""
+    if ray.bounces == 0:
+        return wave
+    upright, level, rising, done = wave
+    due = absolute(floor(storeys - copysign(lanes_of(EDGE_OF_STOREY), ray.slope)))
+    late = done < due
+    while any_of(late):
+        upwards = rising > 0.0
+        tm = where_complex(upwards, ray.ceiling_tm, ray.floor_tm)
+        te = where_complex(upwards, ray.ceiling_te, ray.floor_te)
+        upright = where_complex(late, upright * tm, upright)
+        level = where_complex(late, level * te, level)
+        rising = where(late, -rising, rising)
+        done = where(late, done + 1.0, done)
+        late = done < due
+    return Wave(upright, level, rising, done)
 
 
 @jit(inner=True)
-def solid_at(view: PlanView, profile: int, z: float) -> int:
-    """Material of a profile at or next to a height where a leg is reflected."""
-    material = material_at(view, profile, z)
-    if material < 0:
-        above = material_at(view, profile, z + NUDGE_M)
-        material = above if above >= 0 else material_at(view, profile, z - NUDGE_M)
-    return material
+def solid_at(view: PlanView, profile: int, z: Lanes) -> Lanes:
+    """Materials of a profile at or next to heights where legs are reflected."""
+    material = materials_at(view, profile, z)
+    if any_of(material < 0.0):
+        above = materials_at(view, profile, z + NUDGE_M)
+        beside = where(above >= 0.0, above, materials_at(view, profile, z - NUDGE_M))
+        material = where(material >= 0.0, material, beside)
+    return maximum(material, 0.0)
 
 
 @jit(inner=True, fast=True)
 def let_through(
-    view: PlanView,
-    radio: Radio,
-    leg: Leg,
-    k: int,
-    ray: Ray,
-    z_root: float,
-    field: tuple[complex, complex, int],
-) -> tuple[complex, complex, int]:
-    """Field behind item k of a leg, which it passes (docs/theory.md, eqs. 28-30)."""
-    upright, level, done = field
-    slab = leg.marks[k, WHAT]
-    z = z_root + ray.slope * leg.items[k, DISTANCE]
+    view: PlanView, radio: Radio, leg: Leg, k: int, ray: Ray, z_root: Lanes, wave: Wave
+) -> Wave:
+    """Field behind item k of legs, which they pass (docs/theory.md, eqs. 28-30)."""
+    slab = lanes_of(float(leg.marks[k, WHAT]))
+    z = z_root + ray.slope * load(leg.items[k, DISTANCE])
     if leg.marks[k, KIND] == PASS_PARTIAL:
-        slab = material_at(view, slab, folded(z, radio.height))
-        if slab < 0:
-            return field
-    upright, level, done = bounced(ray, z / radio.height, upright, level, done)
-    normal = leg.items[k, NORMAL]
-    tm, mix = slab_lookup(radio.through, slab, abs(normal) * ray.cos_el)
-    a = leg.items[k, SKEW]
-    b = normal * ray.sin_el if done & 1 else -normal * ray.sin_el
-    t = (upright * a + level * b) * mix
-    return tm * upright + t * a, tm * level + t * b, done
+        slab = materials_at(view, leg.marks[k, WHAT], in_building(z, radio.height))
+    solid = slab >= 0.0
+    if not any_of(solid):
+        return wave
+    wave = bounced(ray, z / radio.height, wave)
+    normal = load(leg.items[k, NORMAL])
+    cosine = absolute(normal) * ray.cos_el
+    tm, mix = slab_lookup(radio.through, radio.slab_rows, maximum(slab, 0.0), cosine)
+    a, b = load(leg.items[k, SKEW]), -normal * wave.rising
+    t = (wave.upright * a + wave.level * b) * mix
+    return Wave(
+        where_complex(solid, tm * wave.upright + t * a, wave.upright),
+        where_complex(solid, tm * wave.level + t * b, wave.level),
+        wave.rising,
+        wave.done,
+    )
 
 
 @jit(inline=True, fast=True)
@@ -215,130 +289,123 @@ def carried(
     radio: Radio,
     leg: Leg,
     n: int,
-    length: float,
+    length: Lanes,
     ray: Ray,
-    z_root: float,
-    field: tuple[complex, complex, int],
-) -> tuple[complex, complex, int]:
-    """Carry a field along a leg.
+    z_root: Lanes,
+    wave: Wave,
+) -> Wave:
+    """Carry a field along legs.
 
     Parameters
     ----------
     view, radio
         Plan view and radio.
     leg, n, length
-        The leg, its number of items and its horizontal length [m].
+        The legs, their number of items and their horizontal lengths [m].
     ray, z_root
-        Its heights; the unfolded one at its root [m].
-    field
-        Upright and level polarisation at the root, and the bounces already done on this ray.
-
-    Returns
-    -------
-    tuple
-        The same at the end of the leg.
+        Their heights; the unfolded ones at their roots [m].
+    wave
+        The field at the root; the one at the end is returned.
     """
-    upright, level, done = field
     per_height = 1.0 / radio.height
     for k in range(n):
-        kind, slab = leg.marks[k, KIND], leg.marks[k, WHAT]
+        kind = leg.marks[k, KIND]
         if kind >= PASS_PARTIAL:
             if len(radio.through) > 0:
-                upright, level, done = let_through(
-                    view, radio, leg, k, ray, z_root, (upright, level, done)
-                )
+                wave = let_through(view, radio, leg, k, ray, z_root, wave)
             continue
-        z = z_root + ray.slope * leg.items[k, DISTANCE]
-        upright, level, done = bounced(ray, z * per_height, upright, level, done)
+        z = z_root + ray.slope * load(leg.items[k, DISTANCE])
+        wave = bounced(ray, z * per_height, wave)
+        slab = lanes_of(float(leg.marks[k, WHAT]))
         if kind == REFLECT_PARTIAL:
-            slab = solid_at(view, slab, folded(z, radio.height))
-        normal = leg.items[k, NORMAL]
-        tm, mix = slab_lookup(radio.slabs, slab, abs(normal) * ray.cos_el)
-        a = leg.items[k, SKEW]
-        b = normal * ray.sin_el
-        if not done & 1:
-            b = -b
-        t = (upright * a + level * b) * mix
-        upright = t * a - tm * upright
-        level = tm * level - t * b
-    return bounced(ray, (z_root + ray.slope * length) * per_height, upright, level, done)
+            slab = solid_at(view, leg.marks[k, WHAT], in_building(z, radio.height))
+        normal = load(leg.items[k, NORMAL])
+        tm, mix = slab_lookup(
+            radio.slabs, radio.slab_rows, slab, absolute(normal) * ray.cos_el
+        )
+        a, b = load(leg.items[k, SKEW]), -normal * wave.rising
+        t = (wave.upright * a + wave.level * b) * mix
+        wave = Wave(
+            t * a - tm * wave.upright, tm * wave.level - t * b, wave.rising, wave.done
+        )
+    return bounced(ray, (z_root + ray.slope * length) * per_height, wave)
 
 
 @jit(inner=True)
 def pattern_at(
-    pattern: NDArray[np.complex128], x: float, y: float, sine: float
-) -> tuple[complex, complex]:
-    """Upright and level amplitude towards a direction (see `raytrace.antennas.antenna_tables`).
+    pattern: Floats, azimuths: int, x: Lanes, y: Lanes, sine: Lanes
+) -> tuple[ComplexLanes, ComplexLanes]:
+    """Upright and level amplitudes towards directions (see `raytrace.antennas.antenna_tables`).
 
     Parameters
     ----------
-    pattern
-        (n_elevations, n_azimuths, 2) of one antenna.
+    pattern, azimuths
+        Of one antenna, see `Radio`.
     x, y
-        Horizontal direction, of length 1.
+        Horizontal directions, of length 1.
     sine
-        Of the elevation.
+        Of the elevations.
     """
-    cosine = math.sqrt(max(1.0 - sine * sine, 0.0))
-    row = (1.0 + sine / (abs(sine) + cosine)) * 0.5 * (pattern.shape[0] - 1)
-    quarter = abs(y) / max(abs(x) + abs(y), 1e-300)
-    if x >= 0.0:
-        turn = quarter if y >= 0.0 else 4.0 - quarter
-    else:
-        turn = 2.0 - quarter if y >= 0.0 else 2.0 + quarter
-    column = turn * 0.25 * (pattern.shape[1] - 1)
-    i = min(max(int(row), 0), pattern.shape[0] - 2)
-    j = min(max(int(column), 0), pattern.shape[1] - 2)
-    v, w = row - i, column - j
-    low, high = pattern[i], pattern[i + 1]
-    upright = (1.0 - v) * ((1.0 - w) * low[j, 0] + w * low[j + 1, 0])
-    upright += v * ((1.0 - w) * high[j, 0] + w * high[j + 1, 0])
-    level = (1.0 - v) * ((1.0 - w) * low[j, 1] + w * low[j + 1, 1])
-    level += v * ((1.0 - w) * high[j, 1] + w * high[j + 1, 1])
-    return upright, level
+    elevations = len(pattern) // azimuths
+    cosine = sqrt(maximum(1.0 - sine * sine, 0.0))
+    rise = (1.0 + sine / (absolute(sine) + cosine)) * (0.5 * (elevations - 1))
+    quarter = absolute(y) / maximum(absolute(x) + absolute(y), 1e-300)
+    right = where(y >= 0.0, quarter, 4.0 - quarter)
+    left = where(y >= 0.0, 2.0 - quarter, 2.0 + quarter)
+    turn = where(x >= 0.0, right, left) * (0.25 * (azimuths - 1))
+    i = floor(maximum(minimum(rise, elevations - 2.0), 0.0))
+    j = floor(maximum(minimum(turn, azimuths - 2.0), 0.0))
+    v, w = rise - i, turn - j
+    below = row_between(pattern, i * float(azimuths) + j, w)
+    above = row_between(pattern, (i + 1.0) * float(azimuths) + j, w)
+    return below[0] * (1.0 - v) + above[0] * v, below[1] * (1.0 - v) + above[1] * v
 
 
 @jit(inline=True)
-def sent(radio: Radio, direction: tuple[float, float], sine: float) -> tuple[complex, complex]:
-    """Upright and level amplitude that the transmitter sends out.
+def row_between(pattern: Floats, row: Lanes, w: Lanes) -> tuple[ComplexLanes, ComplexLanes]:
+    """Entries between a row and the next."""
+    a, b, c, d, a2, b2, c2, d2 = gather_pairs4(pattern, row)
+    return (
+        complex_of(a + (a2 - a) * w, b + (b2 - b) * w),
+        complex_of(c + (c2 - c) * w, d + (d2 - d) * w),
+    )
+
+
+@jit(inline=True)
+def sent(radio: Radio, direction: tuple[Lanes, Lanes], ray: Ray) -> Wave:
+    """What the transmitter sends out along rays.
 
     Parameters
     ----------
-    radio
-        The antennas.
-    direction, sine
-        Horizontal direction of departure, of length 1, and sine of the elevation.
+    radio, ray
+        The antennas, and the rays' elevations.
+    direction
+        Horizontal directions of departure, of length 1.
     """
-    if len(radio.patterns) == 0:
-        return complex(interpolated(radio.transmit, sine)), 0j
-    return pattern_at(radio.patterns[0], direction[0], direction[1], sine)
+    none = lanes_of(0.0)
+    if len(radio.patterns[0]) == 0:
+        upright = complex_of(interpolated(radio.transmit, ray.sin_el), none)
+        return Wave(upright, complex_of(none, none), ray.sin_el, none)
+    upright, level = pattern_at(
+        radio.patterns[0], radio.azimuths, direction[0], direction[1], ray.sin_el
+    )
+    return Wave(upright, level, ray.sin_el, none)
 
 
 @jit(inline=True)
-def received(
-    radio: Radio,
-    field: tuple[complex, complex],
-    direction: tuple[float, float],
-    sine: float,
-) -> complex:
+def received(radio: Radio, wave: Wave, direction: tuple[Lanes, Lanes]) -> ComplexLanes:
     """What the receiver takes up of a field.
 
     Parameters
     ----------
-    radio
-        The antennas.
-    field
-        Upright and level amplitude.
-    direction, sine
-        Horizontal direction that the ray comes from, of length 1, and sine of its elevation.
+    radio, wave
+        The antennas, and the field.
+    direction
+        Horizontal directions that the rays come from, of length 1.
     """
-    if len(radio.patterns) == 0:
-        return field[0] * interpolated(radio.receive, sine)
-    upright, level = pattern_at(radio.patterns[1], direction[0], direction[1], sine)
-    return upright * field[0] - level * field[1]
-
-
-@jit(inline=True)
-def arriving_sine(ray: Ray, done: int) -> float:
-    """Sine of the elevation that a ray comes from, after so many bounces."""
-    return ray.sin_el if done & 1 else -ray.sin_el
+    if len(radio.patterns[1]) == 0:
+        return wave.upright * interpolated(radio.receive, -wave.rising)
+    upright, level = pattern_at(
+        radio.patterns[1], radio.azimuths, direction[0], direction[1], -wave.rising
+    )
+    return upright * wave.upright - level * wave.level

@@ -6,41 +6,62 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.kernels.beams import ORDER, PARENT, Hits, Tree
+from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, PARENT, Hits, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import (
     Radio,
     Ray,
-    arriving_sine,
+    Wave,
     carried,
     new_ray,
     phasor,
     received,
     sent,
 )
+from raytrace.kernels.lanes import (
+    WIDTH,
+    ComplexLanes,
+    Lanes,
+    Mask,
+    absolute,
+    any_of,
+    lanes_of,
+    load,
+    maximum,
+    minimum,
+    none_chosen,
+    sqrt,
+    store,
+    where,
+)
 from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView
 from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import (
+    Block,
     Record,
+    Room,
     Sums,
     Trace,
-    arrived,
+    add_bundle,
+    counted,
     free_space,
-    leave_out,
+    new_room,
+    next_block,
+    no_paths,
     recorded,
-    straight_line,
+    strong,
+    with_path,
 )
 from raytrace.kernels.unfolding import (
     NUDGE_M,
-    TOUCHING,
     Leg,
+    allowed,
     most_items,
     new_leg,
     unfold,
     walls_met,
 )
-from raytrace.kernels.upright_edges import write_angles
-from raytrace.kernels.utd import common_factor, diffracted, new_wedge, wedge_terms
+from raytrace.kernels.utd import Wedge, common_factor, diffracted, face_angles, wedge_terms
 
 
 class Rim(NamedTuple):
@@ -54,14 +75,14 @@ class Rim(NamedTuple):
         Its height [m].
     up
         1 where the wall is above it, -1 where below.
-    slab
-        Of the wall.
+    wedge
+        The end of the wall's sheet.
     """
 
     frame: Floats
     z: float
     up: float
-    slab: int
+    wedge: Wedge
 
 
 class RimLegsIn(NamedTuple):
@@ -85,50 +106,105 @@ class RimLegsIn(NamedTuple):
     high: Floats
 
 
+class Seen(NamedTuple):
+    """Eight receivers as an edge sees them.
+
+    Attributes
+    ----------
+    x, h
+        Where they are along the edge, and how far off it in the plan view [m].
+    low, high
+        The stretch of the edge that sees them [m].
+    """
+
+    x: Lanes
+    h: Lanes
+    low: Lanes
+    high: Lanes
+
+
 class RimPath(NamedTuple):
-    """One path over a level edge.
+    """Eight paths over a level edge, from the same image of the source.
 
     Attributes
     ----------
     u
-        Where it crosses the edge, from its start [m].
+        Where they cross the edge, from its start [m].
     before, after
         Lengths before and behind the edge [m].
+    h_source, h_receiver
+        How far source and receivers are off the edge in the plan view [m].
     z_source, z_receiver
-        Images of the two heights as seen from the edge [m].
+        Images of the heights as seen from the edge [m].
     bounces_in, bounces_out
         Reflections at floor and ceiling before and behind the edge.
+    beam_in, beam_out
+        Beams that light the edge, and the receivers.
     """
 
-    u: float
-    before: float
-    after: float
+    u: Lanes
+    before: Lanes
+    after: Lanes
+    h_source: float
+    h_receiver: Lanes
     z_source: float
-    z_receiver: float
+    z_receiver: Lanes
     bounces_in: int
     bounces_out: int
+    beam_in: int
+    beam_out: int
 
 
-class Work(NamedTuple):
-    """Room that the path evaluation writes to."""
+class RimWork(NamedTuple):
+    """Room that this family works in.
 
+    Attributes
+    ----------
+    room
+        What every family needs, and the legs from the edge.
+    leg_in
+        The legs to the edge.
+    images
+        (n_beams, 2, 8) images of the points where paths cross the edge [m].
+    across
+        (2 max_order + 1, 8) distances of the receivers' images from the edge's line [m].
+    """
+
+    room: Room
     leg_in: Leg
-    leg_out: Leg
     images: Floats
-    angles_in: Floats
-    angles_out: Floats
+    across: Floats
 
 
 @jit()
-def new_work(tree: Tree, strips: StripTree) -> Work:
+def new_work(max_order: int, tree: Tree, strips: StripTree) -> RimWork:
     """Room for the paths between two sets of beams."""
-    return Work(
+    return RimWork(
+        new_room(max_order, most_items(strips.link)),
         new_leg(most_items(tree.link)),
-        new_leg(most_items(strips.link)),
-        np.empty((len(strips.link), 2)),
-        np.empty(6),
-        np.empty(6),
+        np.empty((len(strips.link), 2, WIDTH)),
+        np.empty((2 * max_order + 1, WIDTH)),
     )
+
+
+@jit(inline=True)
+def seen_by(rim: Rim, seen: Floats, block: Block, work: RimWork) -> Seen:
+    """Receivers of a block as the edge sees them; their distances from its line are noted."""
+    rows = work.room.rows
+    for j in range(WIDTH):
+        hit = block.first + min(j, block.n - 1)
+        rows[0, j], rows[1, j] = seen[hit, 0], seen[hit, 1]
+        rows[2, j], rows[3, j] = seen[hit, 2], seen[hit, 3]
+    h = load(rows[1])
+    for k in range(len(work.across)):
+        store(work.across[k], root_of_squares(h, load(work.room.image_z[k]) - rim.z))
+    return Seen(load(rows[0]), h, load(rows[2]), load(rows[3]))
+
+
+@jit(inline=True)
+def root_of_squares(a: Lanes, b: Lanes) -> Lanes:
+    """Length of vectors with two components."""
+    return sqrt(a * a + b * b)
 
 
 @jit(fast=True, allocates=False)
@@ -138,7 +214,7 @@ def sum_level_edge(
     source: tuple[Tree, RimLegsIn],
     strips: StripTree,
     lit: tuple[Hits, Floats],
-    work: Work,
+    work: RimWork,
     sums: Sums,
     record: Record,
 ) -> None:
@@ -157,111 +233,124 @@ def sum_level_edge(
     sums, record
         Added to.
     """
-    tree, legs_in = source
-    hits, seen = lit
+    (tree, legs_in), (hits, seen_hits), room = source, lit, work.room
     z_in, bounces = trace.source_z, trace.image_bounces
-    for hit in range(len(hits.pair)):
-        r, i = hits.pair[hit, 0], hits.pair[hit, 1]
-        h = seen[hit, 1]
-        z_out = trace.image_z[trace.level[r]]
+    first = 0
+    while first < len(hits.pair):
+        block = next_block(trace, hits, first, room)
+        first += block.n
+        seen = seen_by(rim, seen_hits, block, work)
+        bundle = no_paths()
         for p in range(len(legs_in.order)):
-            order = strips.link[i, ORDER] + legs_in.order[p]
+            order = strips.link[block.beam, ORDER] + legs_in.order[p]
             budget = trace.max_order - order
             if budget < 0:
                 break
-            stretch = max(seen[hit, 2], legs_in.low[p]), min(seen[hit, 3], legs_in.high[p])
-            if stretch[1] - stretch[0] <= TIE_M:
+            low, high = maximum(seen.low, legs_in.low[p]), minimum(seen.high, legs_in.high[p])
+            share_here = where(high - low > TIE_M, block.share, 0.0)
+            if not any_of(share_here > 0.0):
                 continue
-            ends = (legs_in.x[p], seen[hit, 0])
+            x, h = legs_in.x[p], legs_in.h[p]
             if trace.least_power > 0.0:
-                bound = free_space(trace, math.hypot(abs(legs_in.h[p]) + h, ends[1] - ends[0]))
-                if bound < trace.least_power:
-                    left = 2 * budget * (budget + 1) + 1
-                    leave_out(trace, sums, r, bound, left * hits.share[hit])
-                    continue
-            at = (legs_in.beam[p], legs_in.h[p], i, h)
+                bound = free_space(trace, root_of_squares(abs(h) + seen.h, seen.x - x))
+                n_images = 2.0 * budget * (budget + 1.0) + 1.0
+                share_here = strong(trace, sums, room, bound, share_here, n_images)
             for a in range(2 * budget + 1):
-                across_in = math.sqrt(legs_in.h[p] ** 2 + (z_in[a] - rim.z) ** 2)
+                across_in = math.sqrt(h * h + (z_in[a] - rim.z) ** 2)
                 for b in range(2 * (budget - bounces[a]) + 1):
-                    across_out = math.sqrt(h * h + (z_out[b] - rim.z) ** 2)
-                    u, share = crossing(ends, (across_in, across_out), stretch)
-                    if share == 0.0:
+                    across_out = load(work.across[b])
+                    u = (across_out * x + seen.x * across_in) / (across_out + across_in)
+                    share = share_here * share_inside(u, low, high)
+                    if not any_of(share > 0.0):
                         continue
                     path = RimPath(
-                        u,
-                        math.hypot(across_in, u - ends[0]),
-                        math.hypot(across_out, u - ends[1]),
-                        z_in[a],
-                        z_out[b],
-                        bounces[a],
-                        bounces[b],
-                    )
-                    fitting, gain = rim_gain(trace, rim, path, (tree, strips), at, r, work)
-                    share *= fitting * hits.share[hit]
-                    if share == 0.0:
-                        continue
-                    add_rim_path(trace, r, path, i, order, (gain, share), work, sums)
-                    recorded(record, hit, p, (a, b), gain, share)
+                        u, root_of_squares(lanes_of(across_in), u - x),
+                        root_of_squares(across_out, u - seen.x), h, seen.h, z_in[a],
+                        load(room.image_z[b]), bounces[a], bounces[b], legs_in.beam[p], block.beam,
+                    )  # fmt: skip
+                    fits, gain, arriving = rim_gain(trace, rim, path, (tree, strips), block, work)
+                    share = share * fits
+                    counted(room, order + bounces[a] + bounces[b], share)
+                    detour = path.before + path.after - block.straight
+                    bundle = with_path(bundle, gain, detour, share, arriving)
+                    if record.used[0] >= 0:
+                        recorded(record, (block.first, block.n), p, (a, b), gain, share)
+        add_bundle(sums, block, bundle, room)
 
 
 @jit(inline=True)
-def crossing(
-    ends: tuple[float, float], across: tuple[float, float], stretch: tuple[float, float]
-) -> tuple[float, float]:
-    """Keller's point, of equal angles with the edge before and behind it, and its share.
-
-    Parameters
-    ----------
-    ends, across
-        Where source and receiver are along the edge, and how far off it [m].
-    stretch
-        The part of the edge that both see [m].
-    """
-    u = (ends[0] * across[1] + ends[1] * across[0]) / (across[0] + across[1])
-    inside = min(u - stretch[0], stretch[1] - u)
-    if inside <= -TIE_M:
-        return u, 0.0
-    return u, 1.0 if inside >= TIE_M else 0.5
+def share_inside(u: Lanes, low: Lanes, high: Lanes) -> Lanes:
+    """1 for points inside the stretch from low to high, one half at its ends, else 0."""
+    inside = minimum(u - low, high - u)
+    half = where(inside > -TIE_M, lanes_of(0.5), 0.0)
+    return where(inside >= TIE_M, 1.0, half)
 
 
-@jit(inner=True)
-def add_rim_path(
+@jit(inline=True)
+def unfold_over_rim(
     trace: Trace,
-    r: int,
-    path: RimPath,
-    beam: int,
-    order: int,
-    heard: tuple[complex, float],
-    work: Work,
-    sums: Sums,
-) -> None:
-    """Add a path, whose images stand in `work`, with its gain and share to the sums."""
-    order += path.bounces_in + path.bounces_out
-    detour = path.before + path.after - straight_line(trace, r)
-    gain, share = heard
-    arrived(sums, r, order, (gain, detour, share), arriving_direction(trace, r, work, beam))
+    rim: Rim,
+    u: Lanes,
+    trees: tuple[Tree, StripTree],
+    beams: tuple[int, int],
+    receivers: tuple[Lanes, Lanes],
+    work: RimWork,
+) -> tuple[tuple[int, Lanes, Lanes, Lanes], tuple[int, Lanes, Lanes, Lanes]]:
+    """Unfold both legs of paths that cross the edge at u (see `unfolding.unfold`)."""
+    tree, strips = trees
+    target = from_frame(rim.frame, u)
+    leg_in = unfold(trace.plan, tree.link, tree.beam, beams[0], target, work.leg_in)
+    i = beams[1]
+    while i >= 0:
+        x, y = from_frame(strips.frame[i], u)
+        store(work.images[i, IMAGE_X], x)
+        store(work.images[i, IMAGE_Y], y)
+        i = strips.link[i, PARENT]
+    leg = work.room.leg
+    leg_out = unfold(trace.plan, strips.link, work.images, beams[1], receivers, leg)
+    return leg_in, leg_out
 
 
 @jit(inner=True)
-def arriving_direction(trace: Trace, r: int, work: Work, beam: int) -> tuple[float, float]:
-    """Horizontal direction that a path with its images in `work` comes from."""
-    x = work.images[beam, 0] - trace.receivers[r, 0]
-    y = work.images[beam, 1] - trace.receivers[r, 1]
-    per_length = 1.0 / math.hypot(x, y)
-    return x * per_length, y * per_length
+def met(
+    view: PlanView, leg: Leg, n: int, z_root: Lanes, slope: Lanes, height: float, nudge: float
+) -> tuple[Lanes, Mask]:
+    """`unfolding.walls_met`, compiled apart."""
+    return walls_met(view, leg, n, z_root, slope, height, nudge)
 
 
 @jit(inner=True)
-def unfold_leg(
-    view: PlanView,
-    link: NDArray[np.int32],
-    images: Floats,
-    i: int,
-    target: tuple[float, float],
-    leg: Leg,
-) -> tuple[int, float, float, float]:
-    """`unfolding.unfold`, compiled apart: this family calls it too seldom to be inlined."""
-    return unfold(view, link, images, i, target, leg)
+def rim_met(
+    trace: Trace,
+    rim: Rim,
+    items: tuple[int, int],
+    slopes: tuple[Lanes, Lanes],
+    nudges: tuple[float, float],
+    work: RimWork,
+) -> tuple[Lanes, Mask]:
+    """How many walls paths go through, and which touch a rim, as for `unfolding.walls_met`."""
+    view, height, z = trace.plan, trace.radio.height, lanes_of(trace.source[2])
+    before, at_rims = met(view, work.leg_in, items[0], z, slopes[0], height, nudges[0])
+    leg, z = work.room.leg, lanes_of(rim.z)
+    behind, also = met(view, leg, items[1], z, slopes[1], height, nudges[1])
+    return before + behind, at_rims | also
+
+
+@jit(inner=True)
+def rim_fitting(
+    trace: Trace, rim: Rim, items: tuple[int, int], slopes: tuple[Lanes, Lanes], work: RimWork
+) -> Lanes:
+    """Shares of paths that the walls allow at their heights (see `unfolding.fitting`)."""
+    through, touching = rim_met(trace, rim, items, slopes, (0.0, 0.0), work)
+    share = where(allowed(through, trace.max_walls), lanes_of(1.0), 0.0)
+    if any_of(touching):
+        beside = lanes_of(0.0)
+        for a in (-NUDGE_M, NUDGE_M):
+            for b in (-NUDGE_M, NUDGE_M):
+                through, _ = rim_met(trace, rim, items, slopes, (a, b), work)
+                beside = beside + where(allowed(through, trace.max_walls), lanes_of(0.25), 0.0)
+        share = where(touching, beside, share)
+    return share
 
 
 @jit(fast=True, inner=True)
@@ -270,70 +359,13 @@ def carry(
     radio: Radio,
     leg: Leg,
     n: int,
-    length: float,
+    length: Lanes,
     ray: Ray,
-    z_root: float,
-    field: tuple[complex, complex, int],
-) -> tuple[complex, complex, int]:
+    z_root: Lanes,
+    wave: Wave,
+) -> Wave:
     """`field.carried`, compiled apart."""
-    return carried(view, radio, leg, n, length, ray, z_root, field)
-
-
-@jit(inner=True)
-def met(
-    view: PlanView, leg: Leg, n: int, z_root: float, slope: float, height: float, nudge: float
-) -> int:
-    """`unfolding.walls_met`, compiled apart."""
-    return walls_met(view, leg, n, z_root, slope, height, nudge)
-
-
-@jit(inner=True)
-def rim_fitting(
-    trace: Trace,
-    rim: Rim,
-    legs: tuple[int, int],
-    slopes: tuple[float, float],
-    work: Work,
-) -> float:
-    """Share of a path that the walls allow at its heights (see `unfolding.fitting`)."""
-    view, height = trace.plan, trace.radio.height
-    z_in, z_out = trace.source[2], rim.z
-    before = met(view, work.leg_in, legs[0], z_in, slopes[0], height, 0.0)
-    behind = met(view, work.leg_out, legs[1], z_out, slopes[1], height, 0.0)
-    if before != TOUCHING and behind != TOUCHING:
-        fits = before >= 0 and behind >= 0 and before + behind <= trace.max_walls
-        return 1.0 if fits else 0.0
-    share = 0.0
-    for a in (-NUDGE_M, NUDGE_M):
-        for b in (-NUDGE_M, NUDGE_M):
-            before = met(view, work.leg_in, legs[0], z_in, slopes[0], height, a)
-            behind = met(view, work.leg_out, legs[1], z_out, slopes[1], height, b)
-            if before >= 0 and behind >= 0 and before + behind <= trace.max_walls:
-                share += 0.25
-    return share
-
-
-@jit(inner=True)
-def unfold_over_rim(
-    trace: Trace,
-    rim: Rim,
-    u: float,
-    trees: tuple[Tree, StripTree],
-    beams: tuple[int, int],
-    receiver: int,
-    work: Work,
-) -> tuple[tuple[int, float, float, float], tuple[int, float, float, float]]:
-    """Unfold both legs of a path that crosses the edge at u (see `unfolding.unfold`)."""
-    tree, strips = trees
-    x, y = from_frame(rim.frame, u)
-    leg_in = unfold_leg(trace.plan, tree.link, tree.beam, beams[0], (x, y), work.leg_in)
-    i = beams[1]
-    while i >= 0:
-        work.images[i, 0], work.images[i, 1] = from_frame(strips.frame[i], u)
-        i = strips.link[i, PARENT]
-    target = (trace.receivers[receiver, 0], trace.receivers[receiver, 1])
-    leg_out = unfold_leg(trace.plan, strips.link, work.images, beams[1], target, work.leg_out)
-    return leg_in, leg_out
+    return carried(view, radio, leg, n, length, ray, z_root, wave)
 
 
 @jit(fast=True, inner=True)
@@ -342,75 +374,74 @@ def rim_gain(
     rim: Rim,
     path: RimPath,
     trees: tuple[Tree, StripTree],
-    at: tuple[int, float, int, float],
-    receiver: int,
-    work: Work,
-) -> tuple[float, complex]:
-    """Share of a path that the walls allow at its heights, and its gain.
+    block: Block,
+    work: RimWork,
+) -> tuple[Lanes, ComplexLanes, tuple[Lanes, Lanes]]:
+    """Shares of paths that the walls allow, their gains, and horizontal directions they come from.
 
     Parameters
     ----------
     trace, rim, path
-        The trace, the edge, and where the path crosses it.
+        The trace, the edge, and where the paths cross it.
     trees
         Beams from the source and from the edge.
-    at
-        Beam that lights the edge, distance of the source's image from it [m], beam that lights
-        the receiver, distance of the receiver from it [m].
-    receiver
-        Which one.
+    block
+        The receivers.
     work
         Room.
     """
-    view, radio = trace.plan, trace.radio
-    legs = unfold_over_rim(trace, rim, path.u, trees, (at[0], at[2]), receiver, work)
+    view, radio, frame = trace.plan, trace.radio, rim.frame
+    beams, receivers = (path.beam_in, path.beam_out), (block.x, block.y)
+    legs = unfold_over_rim(trace, rim, path.u, trees, beams, receivers, work)
     (n_in, length_in, wx, wy), (n_out, length_out, ux, uy) = legs
-    rise_in, rise_out = rim.z - path.z_source, path.z_receiver - rim.z
-    start = -rise_in if path.bounces_in & 1 else rise_in
-    slope_in, slope_out = start / length_in, rise_out / length_out
-    share = rim_fitting(trace, rim, (n_in, n_out), (slope_in, slope_out), work)
-    if share == 0.0:
-        return 0.0, 0j
-    ray_in = new_ray(radio, slope_in, path.bounces_in)
-    ray_out = new_ray(radio, slope_out, path.bounces_out)
-    upright, level = sent(radio, (wx, wy), ray_in.sin_el)
-    upright, level, _ = carry(
-        view, radio, work.leg_in, n_in, length_in, ray_in, trace.source[2], (upright, level, 0)
+    per_length = 1.0 / length_out
+    arriving = (
+        (load(work.images[path.beam_out, IMAGE_X]) - block.x) * per_length,
+        (load(work.images[path.beam_out, IMAGE_Y]) - block.y) * per_length,
     )
+    rise_in = rim.z - path.z_source
+    start = -rise_in if path.bounces_in & 1 else rise_in
+    slopes = start / length_in, (path.z_receiver - rim.z) * per_length
+    share = rim_fitting(trace, rim, (n_in, n_out), slopes, work)
+    ray_in = new_ray(radio, slopes[0], path.bounces_in)
+    ray_out = new_ray(radio, slopes[1], path.bounces_out)
+    z_root = lanes_of(trace.source[2])
+    wave = sent(radio, (wx, wy), ray_in)
+    wave = carry(view, radio, work.leg_in, n_in, length_in, ray_in, z_root, wave)
     # direction of arrival at the edge, from the image of the source in the last beam
     tree = trees[0]
-    x, y = from_frame(rim.frame, path.u)
-    vx, vy = (x - tree.beam[at[0], 0]) / length_in, (y - tree.beam[at[0], 1]) / length_in
-    sin_el_in = rise_in / path.before
-    sin_beta = math.hypot(rise_in, at[1]) / path.before
-    cos_beta = -rim.up * ray_out.cos_el * (ux * rim.frame[0] + uy * rim.frame[1])
+    x, y = from_frame(frame, path.u)
+    vx = (x - tree.beam[path.beam_in, IMAGE_X]) / length_in
+    vy = (y - tree.beam[path.beam_in, IMAGE_Y]) / length_in
+    per_before = 1.0 / path.before
+    sin_beta = math.hypot(rise_in, path.h_source) * per_before
+    cos_beta = ray_out.cos_el * (ux * frame[0] + uy * frame[1]) * -rim.up
     # into the edge's polarisations, along it and across, and out again: two rotations
-    along, across = turned_to_edge(rim.frame, vx, vy, sin_el_in)
+    along, across = turned_to_edge(frame, vx, vy, rise_in * per_before)
     per_turn = 1.0 / (sin_beta * sin_beta)
     at_edge = (
-        (upright * along + level * across) * per_turn,
-        (level * along - upright * across) * per_turn,
+        (wave.upright * along + wave.level * across) * per_turn,
+        (wave.level * along - wave.upright * across) * per_turn,
     )
-    beta = (sin_beta, cos_beta)
-    walls = met(view, work.leg_in, n_in, trace.source[2], slope_in, radio.height, NUDGE_M)
-    walls += met(view, work.leg_out, n_out, rim.z, slope_out, radio.height, NUDGE_M)
-    more = 0 <= walls < trace.max_walls
-    parallel, normal = over_rim(radio, rim, path, (at[1], at[3]), beta, at_edge, work, more)
-    along, across = turned_to_edge(rim.frame, ux, uy, ray_out.sin_el)
-    field = (parallel * along - normal * across, parallel * across + normal * along, 0)
-    upright, level, done = carry(
-        view, radio, work.leg_out, n_out, length_out, ray_out, rim.z, field
-    )
-    arriving = arriving_direction(trace, receiver, work, at[2])
-    gain = received(radio, (upright, level), arriving, arriving_sine(ray_out, done))
+    through = lanes_of(0.0)
+    if trace.max_walls > 0:
+        walls, _ = rim_met(trace, rim, (n_in, n_out), slopes, (NUDGE_M, NUDGE_M), work)
+        through = where(allowed(walls, trace.max_walls - 1), lanes_of(1.0), 0.0)
+    parallel, normal = over_rim(radio, rim, path, (sin_beta, cos_beta), at_edge, through, work)
+    along, across = turned_to_edge(frame, ux, uy, ray_out.sin_el)
+    none = lanes_of(0.0)
+    upright, level = parallel * along - normal * across, parallel * across + normal * along
+    wave = Wave(upright, level, ray_out.sin_el, none)
+    wave = carry(view, radio, work.room.leg, n_out, length_out, ray_out, none + rim.z, wave)
     total = path.before + path.after
-    size = radio.wavelength / (4.0 * math.pi * math.sqrt(path.before * path.after * total))
-    turns = phasor(radio.cis, total / radio.wavelength)
-    return share, gain * turns * common_factor(2.0, radio.wavelength) * (size / sin_beta)
+    size = (radio.wavelength / (4.0 * math.pi)) / (sqrt(path.before * path.after * total) * sin_beta)
+    turned = phasor(radio.cis, total * (1.0 / radio.wavelength))
+    gain = received(radio, wave, arriving) * (turned * size)
+    return share, gain * common_factor(2.0, radio.wavelength), arriving
 
 
 @jit(inline=True, fast=True)
-def turned_to_edge(frame: Floats, ux: float, uy: float, sin_el: float) -> tuple[float, float]:
+def turned_to_edge(frame: Floats, ux: Lanes, uy: Lanes, sin_el: Lanes) -> tuple[Lanes, Lanes]:
     """Components of tau and psi along a level edge (docs/theory.md, eqs. 23-24)."""
     tx, ty = frame[0], frame[1]
     return -sin_el * (ux * tx + uy * ty), ux * ty - uy * tx
@@ -421,25 +452,21 @@ def over_rim(
     radio: Radio,
     rim: Rim,
     path: RimPath,
-    h: tuple[float, float],
-    beta: tuple[float, float],
-    field: tuple[complex, complex],
-    work: Work,
-    shines_through: bool,
-) -> tuple[complex, complex]:
-    """Field behind the half plane, without its common factor."""
-    # angles from the wall, on the receiver's side; the source may lie on either
-    phi_in = math.atan2(abs(h[0]), rim.up * (path.z_source - rim.z))
-    if h[0] < 0.0:
-        phi_in = 2.0 * math.pi - phi_in
-    phi_out = math.atan2(h[1], rim.up * (path.z_receiver - rim.z))
-    write_angles(phi_in, 2.0, work.angles_in)
-    write_angles(phi_out, 2.0, work.angles_out)
-    wedge = new_wedge(2.0, rim.slab, rim.slab)
-    across_in = math.hypot(h[0], path.z_source - rim.z)
-    across_out = math.hypot(h[1], path.z_receiver - rim.z)
-    tie = 0.5 * TIE_M * (abs(h[0]) + h[1]) / (across_in * across_out)
-    terms = wedge_terms(wedge, phi_out, work.angles_out, phi_in, work.angles_in, tie)
+    beta: tuple[Lanes, Lanes],
+    field: tuple[ComplexLanes, ComplexLanes],
+    shining: Lanes,
+    work: RimWork,
+) -> tuple[ComplexLanes, ComplexLanes]:
+    """Fields behind the half plane, without its common factor."""
+    # angles from the wall, on the receivers' side; the source may lie on either
+    z_in, z_out = rim.up * (path.z_source - rim.z), (path.z_receiver - rim.z) * rim.up
+    h_in, h_out = path.h_source, path.h_receiver
+    per_in, per_out = 1.0 / math.hypot(h_in, z_in), 1.0 / root_of_squares(h_out, z_out)
+    rows = work.room.rows
+    source = face_angles(rim.wedge, lanes_of(z_in * per_in), lanes_of(h_in * per_in), rows)
+    at = face_angles(rim.wedge, z_out * per_out, h_out * per_out, rows)
+    tie = (abs(h_in) + h_out) * per_out * (0.5 * TIE_M * per_in)
+    terms = wedge_terms(rim.wedge, at, source, tie)
     product = path.before * path.after / (path.before + path.after)
-    spread = math.sqrt(4.0 * math.pi / radio.wavelength * product) * beta[0]
-    return diffracted(radio, wedge, terms, spread, beta, field, shines_through)
+    spread = sqrt((4.0 * math.pi / radio.wavelength) * product) * beta[0]
+    return diffracted(radio, rim.wedge, terms, spread, beta, field, shining)

@@ -9,6 +9,7 @@ from raytrace.kernels.beams import Hits, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import EDGE_OF_STOREY
 from raytrace.kernels.level_edges import Rim, RimLegsIn, new_work, unfold_over_rim
+from raytrace.kernels.lanes import lane, lanes_of
 from raytrace.kernels.plan_view import Floats, PlanView, folded, material_at
 from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import Record, Trace
@@ -68,7 +69,7 @@ def add_leg(
     view
         The plan view.
     whole
-        The leg, its number of items, its horizontal length [m].
+        The leg (the first of eight), its number of items, its horizontal length [m].
     heights
         Unfolded height at its root [m], slope, and height of the ceiling [m].
     end
@@ -88,9 +89,9 @@ def add_leg(
     at_edge = EDGE_OF_STOREY * height / abs(slope) if slope != 0.0 else 0.0
     for item in range(n + 1):
         last = item == n
-        distance = length if last else leg.items[item, DISTANCE]
-        to_x = end[0] if last else leg.items[item, ITEM_X]
-        to_y = end[1] if last else leg.items[item, ITEM_Y]
+        distance = length if last else leg.items[item, DISTANCE, 0]
+        to_x = end[0] if last else leg.items[item, ITEM_X, 0]
+        to_y = end[1] if last else leg.items[item, ITEM_Y, 0]
         while slope != 0.0 and (storey * height - z_root) / slope < distance - at_edge:
             w = ((storey * height - z_root) / slope - done) / (distance - done)
             z = height if int(storey) & 1 else 0.0
@@ -122,6 +123,16 @@ def finish_path(trace: Trace, r: int, points: Floats, k: int) -> None:
 
 
 @jit()
+def unfold_one(
+    view: PlanView, tree: Tree, i: int, target: tuple[float, float], leg: Leg
+) -> tuple[int, float]:
+    """Number of items and length of a leg (see `unfolding.unfold`)."""
+    at = lanes_of(target[0]), lanes_of(target[1])
+    n, length, _, _ = unfold(view, tree.link, tree.beam, i, at, leg)
+    return n, lane(length, 0)
+
+
+@jit()
 def reflection_points(
     trace: Trace,
     tree: Tree,
@@ -136,7 +147,7 @@ def reflection_points(
     for path in range(record.used[0]):
         r, i = hits.pair[record.key[path, 0], 0], hits.pair[record.key[path, 0], 1]
         end = (trace.receivers[r, 0], trace.receivers[r, 1])
-        n, length, _, _ = unfold(trace.plan, tree.link, tree.beam, i, end, leg)
+        n, length = unfold_one(trace.plan, tree, i, end, leg)
         slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / length
         k = start_path(trace, points[path], kinds[path])
         heights = (z, slope, trace.radio.height)
@@ -164,7 +175,7 @@ def upright_points(
         n_in, length_in = int(legs_in.n_items[p]), float(legs_in.length[p])
         r, i = hits.pair[hit, 0], hits.pair[hit, 1]
         end = (trace.receivers[r, 0], trace.receivers[r, 1])
-        n, length, _, _ = unfold(trace.plan, tree.link, tree.beam, i, end, leg)
+        n, length = unfold_one(trace.plan, tree, i, end, leg)
         slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / (length_in + length)
         z_edge = z + slope * length_in
         row, kind = points[path], kinds[path]
@@ -190,7 +201,7 @@ def level_points(
     """Points and interactions of recorded paths over a level edge."""
     tree, legs_in = source
     hits, seen = lit
-    work = new_work(tree, strips)
+    work = new_work(trace.max_order, tree, strips)
     height = trace.radio.height
     z_in, bounces = trace.source_z, trace.image_bounces
     for path in range(record.used[0]):
@@ -201,9 +212,12 @@ def level_points(
         rise_out = float(trace.image_z[trace.level[r], b] - rim.z)
         in_, out = math.hypot(legs_in.h[p], rise_in), math.hypot(seen[hit, 1], rise_out)
         u = (legs_in.x[p] * out + seen[hit, 0] * in_) / (in_ + out)
-        (n_in, length_in, _, _), (n, length, _, _) = unfold_over_rim(
-            trace, rim, u, (tree, strips), (legs_in.beam[p], i), r, work
-        )
+        end = (trace.receivers[r, 0], trace.receivers[r, 1])
+        (n_in, lengths_in, _, _), (n, lengths, _, _) = unfold_over_rim(
+            trace, rim, lanes_of(u), (tree, strips), (legs_in.beam[p], i),
+            (lanes_of(end[0]), lanes_of(end[1])), work,
+        )  # fmt: skip
+        length_in, length = lane(lengths_in, 0), lane(lengths, 0)
         at = from_frame(rim.frame, u)
         slope = (-rise_in if bounces[a] & 1 else rise_in) / length_in
         row, kind = points[path], kinds[path]
@@ -211,7 +225,6 @@ def level_points(
         heights = (trace.source[2], slope, height)
         k = add_leg(trace.plan, (work.leg_in, n_in, length_in), heights, at, row, kind, k)
         k = add_point(row, kind, k, DIFFRACTION, (at[0], at[1], rim.z))
-        end = (trace.receivers[r, 0], trace.receivers[r, 1])
         heights = (rim.z, rise_out / length, height)
-        k = add_leg(trace.plan, (work.leg_out, n, length), heights, end, row, kind, k)
+        k = add_leg(trace.plan, (work.room.leg, n, length), heights, end, row, kind, k)
         finish_path(trace, r, row, k)

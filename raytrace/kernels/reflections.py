@@ -4,24 +4,29 @@ import math
 
 from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Hits, Tree
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.field import arriving_sine, carried, new_ray, phasor, received, sent
+from raytrace.kernels.field import carried, new_ray, phasor, received, sent
+from raytrace.kernels.lanes import any_of, lanes_of, load
 from raytrace.kernels.tracing import (
     Record,
+    Room,
     Sums,
     Trace,
-    arrived,
+    add_bundle,
+    counted,
     free_space,
-    leave_out,
     leg_bound,
+    next_block,
+    no_paths,
     recorded,
-    straight_line,
+    strong,
+    with_path,
 )
-from raytrace.kernels.unfolding import Leg, fitting, unfold
+from raytrace.kernels.unfolding import fitting, unfold
 
 
 @jit(fast=True, allocates=False)
 def sum_reflections(
-    trace: Trace, tree: Tree, hits: Hits, leg: Leg, sums: Sums, record: Record
+    trace: Trace, tree: Tree, hits: Hits, room: Room, sums: Sums, record: Record
 ) -> None:
     """Add the paths of all hits of the source's beam tree.
 
@@ -31,40 +36,47 @@ def sum_reflections(
         The trace and the beams from the source.
     hits
         Receivers and beams.
-    leg
-        Room for the longest leg.
+    room
+        To work in.
     sums, record
         Added to.
     """
-    z_source, height = trace.source[2], trace.radio.height
-    for hit in range(len(hits.pair)):
-        r, i = hits.pair[hit, 0], hits.pair[hit, 1]
-        x, y = trace.receivers[r, 0], trace.receivers[r, 1]
-        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (x, y), leg)
-        arriving = (tree.beam[i, IMAGE_X] - x) / length, (tree.beam[i, IMAGE_Y] - y) / length
-        order, straight = tree.link[i, ORDER], straight_line(trace, r)
+    height, z_source, wavelength = trace.radio.height, trace.source[2], trace.radio.wavelength
+    z_root, leg = lanes_of(z_source), room.leg
+    first = 0
+    while first < len(hits.pair):
+        block = next_block(trace, hits, first, room)
+        first += block.n
+        i = block.beam
+        order = tree.link[i, ORDER]
+        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (block.x, block.y), leg)
+        per_length = 1.0 / length
+        arriving = (
+            (tree.beam[i, IMAGE_X] - block.x) * per_length,
+            (tree.beam[i, IMAGE_Y] - block.y) * per_length,
+        )
+        n_images = 2 * (trace.max_order - order) + 1
+        share_here = block.share
         if trace.least_power > 0.0:
             bound = free_space(trace, length) * leg_bound(trace, leg, n, length, order)
-            if bound < trace.least_power:
-                left = 2 * (trace.max_order - order) + 1
-                leave_out(trace, sums, r, bound, left * hits.share[hit])
-                continue
-        for k in range(2 * (trace.max_order - order) + 1):
-            rise = trace.image_z[trace.level[r], k] - z_source
-            slope = rise / length
-            share = fitting(trace.plan, leg, n, z_source, slope, height, trace.max_walls)
-            share *= hits.share[hit]
-            if share == 0.0:
-                continue
-            bounces = trace.image_bounces[k]
-            ray = new_ray(trace.radio, slope, bounces)
-            upright, level = sent(trace.radio, (ux, uy), ray.sin_el)
-            upright, level, done = carried(
-                trace.plan, trace.radio, leg, n, length, ray, z_source, (upright, level, 0)
+            share_here = strong(trace, sums, room, bound, share_here, float(n_images))
+        bundle = no_paths()
+        for k in range(n_images):
+            slope = (load(room.image_z[k]) - z_source) * per_length
+            share = share_here * fitting(
+                trace.plan, leg, n, z_root, slope, height, trace.max_walls
             )
-            gain = received(trace.radio, (upright, level), arriving, arriving_sine(ray, done))
-            distance = math.sqrt(length * length + rise * rise)
-            size = trace.radio.wavelength / (4.0 * math.pi * distance)
-            gain *= size * phasor(trace.radio.cis, distance / trace.radio.wavelength)
-            arrived(sums, r, order + bounces, (gain, distance - straight, share), arriving)
-            recorded(record, hit, -1, (-1, k), gain, share)
+            if not any_of(share > 0.0):
+                continue
+            ray = new_ray(trace.radio, slope, trace.image_bounces[k])
+            wave = sent(trace.radio, (ux, uy), ray)
+            wave = carried(trace.plan, trace.radio, leg, n, length, ray, z_root, wave)
+            distance = length * ray.stretch
+            turned = phasor(trace.radio.cis, distance * (1.0 / wavelength))
+            size = (wavelength / (4.0 * math.pi)) / distance
+            gain = received(trace.radio, wave, arriving) * (turned * size)
+            counted(room, order + ray.bounces, share)
+            bundle = with_path(bundle, gain, distance - block.straight, share, arriving)
+            if record.used[0] >= 0:
+                recorded(record, (block.first, block.n), -1, (-1, k), gain, share)
+        add_bundle(sums, block, bundle, room)

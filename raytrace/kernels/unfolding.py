@@ -1,10 +1,10 @@
 """A path in the plan view: its leg from a root to a point, unfolded to a straight line.
 
 Heights are linear in the unfolded horizontal distance, with floor and ceiling unfolded too, so
-a leg is known by the distances at which it meets walls (docs/theory.md, section 4).
+a leg is known by the distances at which it meets walls (docs/theory.md, section 4). Eight legs are
+unfolded side by side: those of one beam to eight points, which meet the same walls.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -12,16 +12,22 @@ from numpy.typing import NDArray
 
 from raytrace.kernels.beams import EDGE, IMAGE_X, IMAGE_Y, ITEMS, PARENT, REFLECTED
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.plan_view import (
-    TIE_M,
-    WALL,
-    Floats,
-    Ints,
-    PlanView,
-    cross,
-    folded,
-    material_at,
+from raytrace.kernels.lanes import (
+    WIDTH,
+    Lanes,
+    Mask,
+    absolute,
+    any_of,
+    floor,
+    lanes_of,
+    load,
+    maximum,
+    none_chosen,
+    sqrt,
+    store,
+    where,
 )
+from raytrace.kernels.plan_view import TIE_M, WALL, Floats, Ints, PlanView, cross
 
 REFLECT_WALL, REFLECT_PARTIAL, PASS_PARTIAL, PASS_WALL = 0, 1, 2, 3
 """What a leg does at an item: is reflected by a wall, by a partial wall, passes one that is open
@@ -34,9 +40,8 @@ direction against the wall's normal; where it is [m]."""
 KIND, WHAT = range(2)
 """Columns of `Leg.marks`: one of the four above; the slab (full wall) or the profile."""
 
-MISFIT, TOUCHING = -1, -2
-"""What `walls_met` finds of a leg that its heights rule out, or that just touches a rim."""
-
+MISFIT = -1e6
+"""Number of walls that a leg goes through whose heights rule it out; it stays below 0."""
 
 NUDGE_M = 2.0 * TIE_M
 """How far above and below a leg that touches a rim it is looked at."""
@@ -46,12 +51,12 @@ NEAREST_M = 1e-9
 
 
 class Leg(NamedTuple):
-    """Room for one unfolded leg.
+    """Room for eight unfolded legs that meet the same walls.
 
     Attributes
     ----------
     items
-        (n, 5) float64, see `DISTANCE` and its neighbours.
+        (n, 5, 8) float64, see `DISTANCE` and its neighbours.
     marks
         (n, 2) int64, see `KIND` and `WHAT`.
     """
@@ -62,8 +67,8 @@ class Leg(NamedTuple):
 
 @jit()
 def new_leg(n_items: int) -> Leg:
-    """Room for a leg of that many items."""
-    return Leg(np.empty((n_items, 5)), np.empty((n_items, 2), np.int64))
+    """Room for legs of that many items."""
+    return Leg(np.empty((n_items, 5, WIDTH)), np.empty((n_items, 2), np.int64))
 
 
 @jit()
@@ -76,37 +81,45 @@ def most_items(link: NDArray[np.int32]) -> int:
 
 
 @jit(inline=True)
+def image_of(images: Floats, i: int, k: int) -> Lanes:
+    """Coordinate of the root's image in beam i: one for all, or one each."""
+    if images.ndim == 3:
+        return load(images[i, k])
+    return lanes_of(images[i, k])
+
+
+@jit(inline=True)
 def unfold(
     view: PlanView,
     link: NDArray[np.int32],
     images: Floats,
     i: int,
-    target: tuple[float, float],
+    target: tuple[Lanes, Lanes],
     leg: Leg,
-) -> tuple[int, float, float, float]:
-    """Walk back from a point to the root of the beam that lights it.
+) -> tuple[int, Lanes, Lanes, Lanes]:
+    """Walk back from eight points to the root of the beam that lights them.
 
     Parameters
     ----------
     view, link
         Plan view and beams.
     images
-        (n_beams, >= 2) image of the root in each beam [m].
+        (n_beams, >= 2) image of the root in each beam [m], or (n_beams, 2, 8) those of eight roots.
     i
         The beam.
     target
-        The point [m].
+        The points [m].
     leg
         Filled from the root on.
 
     Returns
     -------
     n, length, ux, uy
-        Number of items, horizontal length [m], plan-view direction at the root.
+        Number of items, horizontal lengths [m], plan-view directions at the root.
     """
     x, y = target
-    px, py = images[i, IMAGE_X], images[i, IMAGE_Y]
-    length = max(math.sqrt((x - px) ** 2 + (y - py) ** 2), NEAREST_M)
+    px, py = image_of(images, i, IMAGE_X), image_of(images, i, IMAGE_Y)
+    length = maximum(sqrt((x - px) * (x - px) + (y - py) * (y - py)), NEAREST_M)
     n = link[i, ITEMS]
     rest, k = length, n
     while k > 0:
@@ -118,21 +131,26 @@ def unfold(
             i = link[i, PARENT]
             continue
         k -= 1
-        px, py = images[i, IMAGE_X], images[i, IMAGE_Y]
+        px, py = image_of(images, i, IMAGE_X), image_of(images, i, IMAGE_Y)
         x1, y1 = view.ends[e, 0], view.ends[e, 1]
         dx, dy = view.ends[e, 2] - x1, view.ends[e, 3] - y1
         t = cross(x1 - px, y1 - py, dx, dy) / cross(x - px, y - py, dx, dy)
         x, y = px + t * (x - px), py + t * (y - py)
-        rest *= t
+        rest = rest * t
         i = link[i, PARENT]
-        ux, uy = (x - images[i, IMAGE_X]) / rest, (y - images[i, IMAGE_Y]) / rest
+        per_length = 1.0 / rest
+        ux = (x - image_of(images, i, IMAGE_X)) * per_length
+        uy = (y - image_of(images, i, IMAGE_Y)) * per_length
         nx, ny = view.plane[e, 0], view.plane[e, 1]
-        leg.items[k, DISTANCE] = rest
-        leg.items[k, SKEW] = nx * uy - ny * ux
-        leg.items[k, NORMAL] = nx * ux + ny * uy
-        leg.items[k, ITEM_X], leg.items[k, ITEM_Y] = x, y
+        store(leg.items[k, DISTANCE], rest)
+        store(leg.items[k, SKEW], nx * uy - ny * ux)
+        store(leg.items[k, NORMAL], nx * ux + ny * uy)
+        store(leg.items[k, ITEM_X], x)
+        store(leg.items[k, ITEM_Y], y)
         leg.marks[k, KIND], leg.marks[k, WHAT] = mark_of(view, e, passed)
-    return n, length, (x - images[i, IMAGE_X]) / rest, (y - images[i, IMAGE_Y]) / rest
+    ux = (x - image_of(images, i, IMAGE_X)) / rest
+    uy = (y - image_of(images, i, IMAGE_Y)) / rest
+    return n, length, ux, uy
 
 
 @jit(inline=True)
@@ -148,75 +166,124 @@ def mark_of(view: PlanView, e: int, passed: bool) -> tuple[int, int]:
 
 
 @jit(inline=True)
-def walls_met(
-    view: PlanView,
-    leg: Leg,
-    n: int,
-    z_root: float,
-    slope: float,
-    height: float,
-    nudge: float,
-) -> int:
-    """How many walls a leg goes through; `MISFIT` if it is reflected where there is no wall.
-
-    Parameters
-    ----------
-    view, leg, n
-        Plan view, the leg and its number of items.
-    z_root, slope
-        Unfolded height [m] at the root, and its growth over horizontal distance.
-    height
-        Of the ceiling [m].
-    nudge
-        By how much the leg is taken to be higher [m]; with 0, `TOUCHING` is returned for one that
-        goes through the rim of a wall.
-    """
-    through = 0
-    for k in range(n):
-        kind = leg.marks[k, KIND]
-        if kind == REFLECT_WALL:
-            continue
-        if kind == PASS_WALL:
-            through += 1
-            continue
-        z = folded(z_root + slope * leg.items[k, DISTANCE] + nudge, height)
-        if nudge == 0.0 and is_at_rim(view, leg.marks[k, WHAT], z):
-            return TOUCHING
-        is_open = material_at(view, leg.marks[k, WHAT], z) < 0
-        if kind == PASS_PARTIAL:
-            through += 0 if is_open else 1
-        elif is_open:
-            return MISFIT
-    return through
+def in_building(z: Lanes, height: float) -> Lanes:
+    """Heights in the building of unfolded heights (see `plan_view.folded`)."""
+    storeys = floor(z / height)
+    rest = z - storeys * height
+    odd = storeys - 2.0 * floor(0.5 * storeys)
+    return where(odd > 0.5, height - rest, rest)
 
 
 @jit(inline=True)
-def is_at_rim(view: PlanView, profile: int, z: float) -> bool:
-    """Whether a height is that of a rim of a profile."""
-    near = False
+def materials_at(view: PlanView, profile: int, z: Lanes) -> Lanes:
+    """Materials of a profile at heights z, -1 where it is open."""
+    k = int(view.profile_bins[profile + 1]) - 1
+    material = lanes_of(float(view.bin_material[k]))
+    while k > view.profile_bins[profile]:
+        k -= 1
+        material = where(z <= view.bin_top[k], float(view.bin_material[k]), material)
+    return material
+
+
+@jit(inline=True)
+def at_rim(view: PlanView, profile: int, z: Lanes) -> Mask:
+    """Which heights are that of a rim of a profile."""
+    near = none_chosen()
     for k in range(view.profile_bins[profile], view.profile_bins[profile + 1] - 1):
-        near = near or abs(z - view.bin_top[k]) < TIE_M
+        near = near | (absolute(z - view.bin_top[k]) < TIE_M)
     return near
 
 
 @jit(inline=True)
+def walls_met(
+    view: PlanView,
+    leg: Leg,
+    n: int,
+    z_root: Lanes,
+    slope: Lanes,
+    height: float,
+    nudge: float,
+) -> tuple[Lanes, Mask]:
+    """How many walls legs go through; below 0 for one that is reflected where there is no wall.
+
+    Parameters
+    ----------
+    view, leg, n
+        Plan view, the legs and their number of items.
+    z_root, slope
+        Unfolded heights [m] at the root, and their growth over horizontal distance.
+    height
+        Of the ceiling [m].
+    nudge
+        By how much the legs are taken to be higher [m].
+
+    Returns
+    -------
+    through, touching
+        Number of walls, and which legs go through the rim of a wall.
+    """
+    through, touching = lanes_of(0.0), none_chosen()
+    for k in range(n):
+        kind, what = leg.marks[k, KIND], leg.marks[k, WHAT]
+        if kind == REFLECT_WALL:
+            continue
+        if kind == PASS_WALL:
+            through = through + 1.0
+            continue
+        z = in_building(z_root + slope * load(leg.items[k, DISTANCE]) + nudge, height)
+        touching = touching | at_rim(view, what, z)
+        solid = materials_at(view, what, z) >= 0.0
+        if kind == PASS_PARTIAL:
+            through = where(solid, through + 1.0, through)
+        else:
+            through = where(solid, through, MISFIT)
+    return through, touching
+
+
+@jit(inline=True)
+def allowed(through: Lanes, most_walls: int) -> Mask:
+    """Which paths go through no more walls than they may, and fit."""
+    return (through >= 0.0) & (through <= float(most_walls))
+
+
+@jit(inline=True)
+def weighed(
+    share: Lanes, touching: Mask, through: Lanes, at_rims: Mask, nudge: float, most_walls: int
+) -> tuple[Lanes, Mask]:
+    """Shares of paths after a look at them, and which ones touch a rim.
+
+    Parameters
+    ----------
+    share, touching
+        So far; of those that touch a rim, the looks from above and below count half.
+    through, at_rims, nudge
+        See `walls_met`.
+    most_walls
+        Most walls that a path may go through.
+    """
+    fits = where(allowed(through, most_walls), lanes_of(1.0), 0.0)
+    if nudge == 0.0:
+        return where(at_rims, 0.0, fits), at_rims
+    return where(touching, share + 0.5 * fits, share), touching
+
+
+@jit(inline=True)
 def fitting(
-    view: PlanView, leg: Leg, n: int, z_root: float, slope: float, height: float, most_walls: int
-) -> float:
-    """Share of a leg that its heights allow: 1, 0, or one half where it touches a rim."""
-    met = walls_met(view, leg, n, z_root, slope, height, 0.0)
-    if met != TOUCHING:
-        return 1.0 if 0 <= met <= most_walls else 0.0
-    share = 0.0
-    for nudge in (-NUDGE_M, NUDGE_M):
-        if 0 <= walls_met(view, leg, n, z_root, slope, height, nudge) <= most_walls:
-            share += 0.5
+    view: PlanView, leg: Leg, n: int, z_root: Lanes, slope: Lanes, height: float, most_walls: int
+) -> Lanes:
+    """Shares of legs that their heights allow: 1, 0, or one half where one touches a rim."""
+    share, touching = lanes_of(0.0), none_chosen()
+    for nudge in (0.0, -NUDGE_M, NUDGE_M):
+        through, at_rims = walls_met(view, leg, n, z_root, slope, height, nudge)
+        share, touching = weighed(share, touching, through, at_rims, nudge, most_walls)
+        if not any_of(touching):
+            break
     return share
 
 
 @jit(inline=True)
 def is_constrained(leg: Leg, n: int) -> bool:
-    """Whether a leg meets a partial wall, or goes through one, so that it has to be looked at."""
+    """Whether legs meet a partial wall, or go through one, so that they have to be looked at."""
     met = False
     for k in range(n):
         met = met or leg.marks[k, KIND] != REFLECT_WALL

@@ -12,42 +12,59 @@ from numpy.typing import NDArray
 
 from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Hits, Tree
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.field import arriving_sine, carried, new_ray, phasor, received, sent
-from raytrace.kernels.plan_view import TIE_M, Floats, Ints, folded
+from raytrace.kernels.field import Wave, carried, new_ray, phasor, received, sent
+from raytrace.kernels.lanes import (
+    WIDTH,
+    ComplexLanes,
+    Lanes,
+    Mask,
+    absolute,
+    any_of,
+    lane,
+    lanes_of,
+    load,
+    minimum,
+    none_chosen,
+    sqrt,
+    where,
+)
+from raytrace.kernels.plan_view import TIE_M, Floats, Ints
 from raytrace.kernels.tracing import (
     Record,
+    Room,
     Sums,
     Trace,
     add_bundle,
+    counted,
     free_space,
-    leave_out,
     leg_bound,
+    next_block,
     no_paths,
     recorded,
-    straight_line,
+    strong,
     with_path,
 )
 from raytrace.kernels.unfolding import (
     MISFIT,
     NUDGE_M,
-    TOUCHING,
     Leg,
+    allowed,
+    in_building,
     is_constrained,
     most_items,
     unfold,
     walls_met,
+    weighed,
 )
 from raytrace.kernels.utd import (
-    COSINE_HALF,
-    COSINE_WEDGE,
-    ROOT_N,
-    ROOT_O,
-    SINE_HALF,
-    SINE_WEDGE,
+    ALONG_FACE,
+    FaceAngles,
     Wedge,
     WedgeTerms,
+    angle_from,
     common_factor,
     diffracted,
+    face_angles,
     wedge_terms,
 )
 
@@ -58,7 +75,7 @@ class Edge(NamedTuple):
     Attributes
     ----------
     x, y, z_low, z_high
-        Where it stands [m].
+        Where it stands [m]; it ends beyond floor and ceiling where it reaches them.
     o_face
         Azimuth of its o-face [rad].
     wedge
@@ -78,8 +95,8 @@ class LegsIn(NamedTuple):
 
     Attributes
     ----------
-    order, n_items, length, phi
-        (n,) reflections, items, horizontal length [m] and angle from the o-face [rad].
+    order, n_items, length
+        (n,) reflections, items, and horizontal length [m].
     share
         (n,) share at a tie.
     departure
@@ -89,15 +106,14 @@ class LegsIn(NamedTuple):
     constrained
         (n,) whether heights matter to it, see `unfolding.is_constrained`.
     angles
-        (n, 6) see `write_angles`.
+        (n, 7) see `utd.FaceAngles`.
     items, marks
-        (n, most, 5), (n, most, 2) their legs.
+        (n, most, 5, 8), (n, most, 2) their legs, eight times the same.
     """
 
     order: Ints
     n_items: Ints
     length: Floats
-    phi: Floats
     share: Floats
     departure: Floats
     bound: Floats
@@ -107,31 +123,11 @@ class LegsIn(NamedTuple):
     marks: Ints
 
 
-ALONG_FACE_RAD = 1e-9
-"""A direction this near to a face of a wedge lies in it."""
-
-
 @jit(inline=True)
-def from_face(azimuth: float, o_face: float) -> float:
-    """Angle of a direction from the o-face, 0 to 2 pi."""
-    phi = azimuth - o_face + ALONG_FACE_RAD
-    return phi - 2.0 * math.pi * math.floor(phi / (2.0 * math.pi)) - ALONG_FACE_RAD
-
-
-@jit(inline=True)
-def write_angles(phi: float, n: float, row: Floats) -> None:
-    """Functions of an angle from the o-face that the wedge terms are made of."""
-    row[COSINE_HALF], row[SINE_HALF] = math.cos(phi / 2.0), math.sin(phi / 2.0)
-    row[COSINE_WEDGE], row[SINE_WEDGE] = math.cos(phi / (2.0 * n)), math.sin(phi / (2.0 * n))
-    row[ROOT_O] = root_of_sine(phi)
-    row[ROOT_N] = root_of_sine(n * math.pi - phi)
-
-
-@jit(inline=True)
-def root_of_sine(phi: float) -> float:
-    """sqrt(|sin phi|), 0 along a face, where the root of a rounding error would be large."""
-    size = abs(math.sin(phi))
-    return math.sqrt(size) if size > 1e-12 else 0.0
+def angles_towards(edge: Edge, ux: Lanes, uy: Lanes, room: Floats) -> FaceAngles:
+    """Angles of horizontal directions from the o-face."""
+    c, s = math.cos(edge.o_face), math.sin(edge.o_face)
+    return face_angles(edge.wedge, ux * c + uy * s, uy * c - ux * s, room)
 
 
 @jit()
@@ -156,35 +152,37 @@ def legs_to_edge(
         np.empty(n_beams, np.int64),
         np.empty(n_beams),
         np.empty(n_beams),
-        np.empty(n_beams),
         np.empty((n_beams, 2)),
         np.empty(n_beams),
         np.empty(n_beams, np.bool_),
-        np.empty((n_beams, 6)),
-        np.empty((n_beams, most, 5)),
+        np.empty((n_beams, 7)),
+        np.empty((n_beams, most, 5, WIDTH)),
         np.empty((n_beams, most, 2), np.int64),
     )
-    kept = 0
+    room, kept = np.empty((3, WIDTH)), 0
+    target = lanes_of(edge.x), lanes_of(edge.y)
     for b in range(n_beams):
         i = beams[b]
-        azimuth = math.atan2(tree.beam[i, 1] - edge.y, tree.beam[i, 0] - edge.x)
-        phi = from_face(azimuth, edge.o_face)
-        if not ALONG_FACE_RAD < phi < edge.wedge.n * math.pi - ALONG_FACE_RAD:
+        dx, dy = tree.beam[i, IMAGE_X] - edge.x, tree.beam[i, IMAGE_Y] - edge.y
+        phi = angle_from(math.atan2(dy, dx), edge.o_face)
+        if not ALONG_FACE < phi < edge.wedge.n * math.pi - ALONG_FACE:
             continue
-        leg = Leg(legs.items[kept], legs.marks[kept])
-        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (edge.x, edge.y), leg)
-        legs.departure[kept, 0], legs.departure[kept, 1] = ux, uy
-        legs.order[kept], legs.n_items[kept] = tree.link[i, ORDER], n
-        legs.length[kept], legs.phi[kept], legs.share[kept] = length, phi, share[b]
+        leg, order = Leg(legs.items[kept], legs.marks[kept]), tree.link[i, ORDER]
+        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, target, leg)
+        legs.departure[kept, 0], legs.departure[kept, 1] = lane(ux, 0), lane(uy, 0)
+        legs.order[kept], legs.n_items[kept] = order, n
+        legs.length[kept], legs.share[kept] = lane(length, 0), share[b]
         legs.constrained[kept] = is_constrained(leg, n)
-        legs.bound[kept] = leg_bound(trace, leg, n, length, tree.link[i, ORDER])
-        write_angles(phi, edge.wedge.n, legs.angles[kept])
+        legs.bound[kept] = lane(leg_bound(trace, leg, n, length, order), 0)
+        per_length = 1.0 / math.hypot(dx, dy)
+        angles = angles_towards(edge, lanes_of(dx * per_length), lanes_of(dy * per_length), room)
+        for k, angle in enumerate(angles):
+            legs.angles[kept, k] = lane(angle, 0)
         kept += 1
     return LegsIn(
         legs.order[:kept],
         legs.n_items[:kept],
         legs.length[:kept],
-        legs.phi[:kept],
         legs.share[:kept],
         legs.departure[:kept],
         legs.bound[:kept],
@@ -195,21 +193,35 @@ def legs_to_edge(
     )
 
 
+@jit(inline=True)
+def angles_of(legs_in: LegsIn, p: int) -> FaceAngles:
+    """Angles from the o-face in which leg p arrives."""
+    a = legs_in.angles[p]
+    return FaceAngles(
+        lanes_of(a[0]), lanes_of(a[1]), lanes_of(a[2]), lanes_of(a[3]), lanes_of(a[4]),
+        lanes_of(a[5]), lanes_of(a[6]),
+    )  # fmt: skip
+
+
 class Pair(NamedTuple):
-    """A leg to the edge with a leg from it, and what does not depend on heights.
+    """A leg to the edge with eight legs from it, and what does not depend on heights.
 
     Attributes
     ----------
     leg_in, n_in, length_in
         The leg to the edge, its items, its horizontal length [m].
     leg_out, n_out, length_out
-        The leg from the edge.
+        The legs from the edge.
+    total
+        Their lengths together [m].
     terms
-        The two directions at the wedge.
+        The directions at the wedge.
     departure, arriving
-        Horizontal directions in which it leaves the source, and which it comes from.
+        Horizontal directions in which they leave the source, and which they come from.
     constrained_in, constrained_out
         Whether heights matter to the legs, see `unfolding.is_constrained`.
+    size, spread
+        Spreading factor, and sqrt(2 k L), for a level path.
     """
 
     leg_in: Leg
@@ -217,119 +229,124 @@ class Pair(NamedTuple):
     length_in: float
     leg_out: Leg
     n_out: int
-    length_out: float
+    length_out: Lanes
+    total: Lanes
     terms: WedgeTerms
-    departure: tuple[float, float]
-    arriving: tuple[float, float]
+    departure: tuple[Lanes, Lanes]
+    arriving: tuple[Lanes, Lanes]
     constrained_in: bool
     constrained_out: bool
+    size: Lanes
+    spread: Lanes
 
 
 @jit(inline=True)
-def pair_met(trace: Trace, edge: Edge, pair: Pair, slope: float, nudge: float) -> int:
-    """How many walls a path goes through; `MISFIT` or `TOUCHING` as for `unfolding.walls_met`."""
-    height, z_root = trace.radio.height, trace.source[2]
+def pair_met(
+    trace: Trace, edge: Edge, pair: Pair, slope: Lanes, nudge: float
+) -> tuple[Lanes, Mask]:
+    """How many walls paths go through, and which touch a rim, as for `unfolding.walls_met`."""
+    height, z_root = trace.radio.height, lanes_of(trace.source[2])
     z = z_root + slope * pair.length_in
-    z_edge = folded(z + nudge, height)
-    if nudge == 0.0 and min(abs(z_edge - edge.z_low), abs(z_edge - edge.z_high)) < TIE_M:
-        return TOUCHING
-    if not edge.z_low < z_edge < edge.z_high:
-        return MISFIT
-    through = 0
+    through, touching = lanes_of(0.0), none_chosen()
+    if edge.z_low > 0.0 or edge.z_high < height:
+        z_edge = in_building(z + nudge, height)
+        beyond = (z_edge <= edge.z_low) | (z_edge >= edge.z_high)
+        through = where(beyond, MISFIT, through)
+        inside = minimum(absolute(z_edge - edge.z_low), absolute(z_edge - edge.z_high))
+        touching = inside < TIE_M
     if pair.constrained_in:
-        through = walls_met(trace.plan, pair.leg_in, pair.n_in, z_root, slope, height, nudge)
-    if through >= 0 and pair.constrained_out:
-        behind = walls_met(trace.plan, pair.leg_out, pair.n_out, z, slope, height, nudge)
-        through = through + behind if behind >= 0 else behind
-    return through
-
-
-@jit(inner=True)
-def met_beside(trace: Trace, edge: Edge, pair: Pair, slope: float, nudge: float) -> int:
-    """`pair_met`, compiled apart: few paths touch a rim."""
-    return pair_met(trace, edge, pair, slope, nudge)
+        met, at_rims = walls_met(trace.plan, pair.leg_in, pair.n_in, z_root, slope, height, nudge)
+        through, touching = through + met, touching | at_rims
+    if pair.constrained_out:
+        met, at_rims = walls_met(trace.plan, pair.leg_out, pair.n_out, z, slope, height, nudge)
+        through, touching = through + met, touching | at_rims
+    return through, touching
 
 
 @jit(inline=True)
-def pair_fitting(trace: Trace, edge: Edge, pair: Pair, slope: float) -> float:
-    """Share of a path that edge and walls allow at its heights (see `unfolding.fitting`)."""
-    met = pair_met(trace, edge, pair, slope, 0.0)
-    if met != TOUCHING:
-        return 1.0 if 0 <= met <= trace.max_walls else 0.0
-    share = 0.0
-    for side in range(2):
-        met = met_beside(trace, edge, pair, slope, NUDGE_M if side else -NUDGE_M)
-        if 0 <= met <= trace.max_walls:
-            share += 0.5
+def pair_fitting(trace: Trace, edge: Edge, pair: Pair, slope: Lanes) -> Lanes:
+    """Shares of paths that edge and walls allow at their heights (see `unfolding.fitting`)."""
+    share, touching = lanes_of(0.0), none_chosen()
+    for nudge in (0.0, -NUDGE_M, NUDGE_M):
+        through, at_rims = pair_met(trace, edge, pair, slope, nudge)
+        share, touching = weighed(share, touching, through, at_rims, nudge, trace.max_walls)
+        if not any_of(touching):
+            break
     return share
 
 
 @jit(inner=True)
-def shines(trace: Trace, edge: Edge, pair: Pair, slope: float) -> bool:
-    """Whether a path may go through one wall more."""
-    return 0 <= met_beside(trace, edge, pair, slope, NUDGE_M) < trace.max_walls
+def shining(trace: Trace, edge: Edge, pair: Pair, slope: Lanes) -> Lanes:
+    """1 for paths that may go through one wall more, else 0."""
+    through, _ = pair_met(trace, edge, pair, slope, NUDGE_M)
+    return where(allowed(through, trace.max_walls - 1), lanes_of(1.0), 0.0)
 
 
 @jit(inline=True, fast=True)
 def pair_gain(
-    trace: Trace, edge: Edge, pair: Pair, slope: float, bounces: int, shines_through: bool
-) -> complex:
-    """Gain of a path, without the wedge's common factor (docs/theory.md, eqs. 16-20).
+    trace: Trace, edge: Edge, pair: Pair, slope: Lanes, bounces: int
+) -> tuple[ComplexLanes, Lanes]:
+    """Gains of paths without the wedge's common factor, and their lengths [m].
 
     With every length its horizontal part over cos_el, and sin beta = cos_el, the spreading factor
-    1 / (sqrt(s s' (s + s')) sin beta) is sqrt(cos_el) over the root of the horizontal parts.
+    1 / (sqrt(s s' (s + s')) sin beta) is sqrt(cos_el) over the root of the horizontal parts
+    (docs/theory.md, eqs. 16-20).
     """
     plan, radio = trace.plan, trace.radio
-    total = pair.length_in + pair.length_out
-    product = pair.length_in * pair.length_out
-    z_root = trace.source[2]
+    z_root = lanes_of(trace.source[2])
     ray = new_ray(radio, slope, bounces)
-    root = math.sqrt(ray.cos_el)
-    upright, level = sent(radio, pair.departure, ray.sin_el)
-    upright, level, done = carried(
-        plan, radio, pair.leg_in, pair.n_in, pair.length_in, ray, z_root, (upright, level, 0)
+    root = sqrt(ray.cos_el)
+    wave = sent(radio, pair.departure, ray)
+    wave = carried(
+        plan, radio, pair.leg_in, pair.n_in, lanes_of(pair.length_in), ray, z_root, wave
     )
-    spread = math.sqrt(4.0 * math.pi / radio.wavelength * product / total) * root
-    rising = -ray.sin_el if done & 1 else ray.sin_el
-    upright, level = diffracted(
+    through = lanes_of(0.0)
+    if trace.max_walls > 0:
+        through = shining(trace, edge, pair, slope)
+    field = diffracted(
         radio,
         edge.wedge,
         pair.terms,
-        spread,
-        (ray.cos_el, rising),
-        (upright, level),
-        shines_through,
+        pair.spread * root,
+        (ray.cos_el, wave.rising),
+        (wave.upright, wave.level),
+        through,
     )
+    wave = Wave(field[0], field[1], wave.rising, wave.done)
     z_edge = z_root + slope * pair.length_in
-    upright, level, done = carried(
-        plan, radio, pair.leg_out, pair.n_out, pair.length_out, ray, z_edge, (upright, level, done)
-    )
-    size = radio.wavelength / (4.0 * math.pi * math.sqrt(product * total))
-    gain = received(radio, (upright, level), pair.arriving, arriving_sine(ray, done))
-    return gain * (size * root) * phasor(radio.cis, total / (ray.cos_el * radio.wavelength))
+    wave = carried(plan, radio, pair.leg_out, pair.n_out, pair.length_out, ray, z_edge, wave)
+    distance = pair.total * ray.stretch
+    turned = phasor(radio.cis, distance * (1.0 / radio.wavelength))
+    return received(radio, wave, pair.arriving) * (turned * (pair.size * root)), distance
 
 
 @jit(inner=True, fast=True)
 def wedge_bound(
-    trace: Trace, wedge: Wedge, terms: WedgeTerms, lengths: tuple[float, float], order: int
-) -> float:
-    """Bound on a diffracted power over that of a free path as long.
+    trace: Trace, is_sheet: bool, cosines: tuple[Lanes, Lanes], spread: Lanes, total: Lanes, order: int
+) -> Lanes:
+    """Bounds on diffracted powers, the walls on the way not counted.
 
-    A term of a half plane has at most half the field there, and at most 1 / (2 sqrt(pi) s) of it,
-    s the argument of its transition function; a wedge has four.
+    A term of a half plane has at most half the field of a free path as long, and at most
+    1 / (2 sqrt(pi) s) of it, s the argument of its transition function; a wedge has four.
+
+    Parameters
+    ----------
+    trace, is_sheet
+        The trace, and whether the wedge is a half plane.
+    cosines
+        Of half the angles to the two shadow boundaries.
+    spread, total, order
+        See `Pair`, and the number of reflections at walls.
     """
-    if not wedge.is_sheet:
-        return 4.0
-    total = lengths[0] + lengths[1]
+    if not is_sheet:
+        return free_space(trace, total) * 4.0
     rise = (trace.max_order - order + 1) * trace.radio.height
-    cos_el = total / math.sqrt(total * total + rise * rise)
-    reduced = lengths[0] * lengths[1] / total
-    spread = math.sqrt(4.0 * math.pi / trace.radio.wavelength * reduced * cos_el)
-    share = 0.0
-    for cosine in (terms.cos_minus, terms.cos_plus):
-        s = 2.0 * math.sqrt(math.pi) * spread * abs(cosine)
-        share += 0.5 if s < 2.0 else 1.0 / s
-    return share * share
+    cos_el = total / sqrt(total * total + rise * rise)
+    share = lanes_of(0.0)
+    for cosine in cosines:
+        s = (2.0 * math.sqrt(math.pi)) * spread * sqrt(cos_el) * absolute(cosine)
+        share = share + where(s < 2.0, lanes_of(0.5), 1.0 / s)
+    return share * share * free_space(trace, total)
 
 
 @jit(fast=True, allocates=False)
@@ -339,7 +356,7 @@ def sum_upright_edge(
     legs_in: LegsIn,
     tree: Tree,
     hits: Hits,
-    work: tuple[Leg, Floats],
+    room: Room,
     sums: Sums,
     record: Record,
 ) -> None:
@@ -353,61 +370,65 @@ def sum_upright_edge(
         Legs from the source.
     tree, hits
         Beams from the edge, and the receivers they light.
-    work
-        Room for the longest leg and for six functions of an angle.
+    room
+        To work in.
     sums, record
         Added to.
     """
-    leg, angles = work
-    common = common_factor(edge.wedge.n, trace.radio.wavelength)
-    for hit in range(len(hits.pair)):
-        r, i = hits.pair[hit, 0], hits.pair[hit, 1]
-        x, y = trace.receivers[r, 0], trace.receivers[r, 1]
-        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (x, y), leg)
-        arriving = (tree.beam[i, IMAGE_X] - x) / length, (tree.beam[i, IMAGE_Y] - y) / length
-        if length < TIE_M:
-            continue
-        phi = from_face(math.atan2(uy, ux), edge.o_face)
-        write_angles(phi, edge.wedge.n, angles)
-        straight = straight_line(trace, r)
-        bound_out = 1.0
+    leg, wavelength = room.leg, trace.radio.wavelength
+    common = common_factor(edge.wedge.n, wavelength)
+    first = 0
+    while first < len(hits.pair):
+        block = next_block(trace, hits, first, room)
+        first += block.n
+        i = block.beam
+        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (block.x, block.y), leg)
+        per_length = 1.0 / length
+        arriving = (
+            (tree.beam[i, IMAGE_X] - block.x) * per_length,
+            (tree.beam[i, IMAGE_Y] - block.y) * per_length,
+        )
+        angles = angles_towards(edge, ux, uy, room.rows)
+        tie = (0.5 * TIE_M) * per_length
+        constrained_out = is_constrained(leg, n)
+        off_edge = where(length < TIE_M, 0.0, block.share)
+        bound_out = lanes_of(1.0)
         if trace.least_power > 0.0:
             bound_out = leg_bound(trace, leg, n, length, tree.link[i, ORDER])
-        tie = 0.5 * TIE_M / length
-        constrained_out = is_constrained(leg, n)
         bundle = no_paths()
         for p in range(len(legs_in.order)):
             order = tree.link[i, ORDER] + legs_in.order[p]
-            if order > trace.max_order:
+            n_images = 2 * (trace.max_order - order) + 1
+            if n_images < 0:
                 break
-            leg_in = Leg(legs_in.items[p], legs_in.marks[p])
-            total = legs_in.length[p] + length
-            terms = wedge_terms(edge.wedge, phi, angles, legs_in.phi[p], legs_in.angles[p], tie)
-            departure = legs_in.departure[p, 0], legs_in.departure[p, 1]
+            total = length + legs_in.length[p]
+            product = length * legs_in.length[p]
+            size = (wavelength / (4.0 * math.pi)) / sqrt(product * total)
+            per_total = 1.0 / total
+            spread = sqrt((4.0 * math.pi / wavelength) * product * per_total)
+            terms = wedge_terms(edge.wedge, angles, angles_of(legs_in, p), tie)
+            departure = lanes_of(legs_in.departure[p, 0]), lanes_of(legs_in.departure[p, 1])
             pair = Pair(
-                leg_in, legs_in.n_items[p], legs_in.length[p], leg, n, length, terms, departure,
-                arriving, legs_in.constrained[p], constrained_out,
+                Leg(legs_in.items[p], legs_in.marks[p]), legs_in.n_items[p], legs_in.length[p],
+                leg, n, length, total, terms, departure, arriving, legs_in.constrained[p],
+                constrained_out, size, spread,
             )  # fmt: skip
-            share_here = legs_in.share[p] * hits.share[hit]
+            share_here = off_edge * legs_in.share[p]
             if trace.least_power > 0.0:
-                lengths = (legs_in.length[p], length)
-                bound = wedge_bound(trace, edge.wedge, terms, lengths, order)
-                bound *= free_space(trace, total) * bound_out * legs_in.bound[p]
-                if bound < trace.least_power:
-                    left = 2 * (trace.max_order - order) + 1
-                    leave_out(trace, sums, r, bound, left * share_here)
-                    continue
-            for k in range(2 * (trace.max_order - order) + 1):
-                rise = trace.image_z[trace.level[r], k] - trace.source[2]
-                slope = rise / total
+                cosines = (terms.cos_minus, terms.cos_plus)
+                bound = wedge_bound(trace, edge.wedge.is_sheet, cosines, spread, total, order)
+                bound = bound * bound_out * legs_in.bound[p]
+                share_here = strong(trace, sums, room, bound, share_here, float(n_images))
+            for k in range(n_images):
+                slope = (load(room.image_z[k]) - trace.source[2]) * per_total
                 share = share_here * pair_fitting(trace, edge, pair, slope)
-                if share == 0.0:
+                if not any_of(share > 0.0):
                     continue
                 bounces = trace.image_bounces[k]
-                through = trace.max_walls > 0 and shines(trace, edge, pair, slope)
-                gain = pair_gain(trace, edge, pair, slope, bounces, through) * common
-                detour = math.sqrt(total * total + rise * rise) - straight
-                sums.n_paths[r, order + bounces] += share
-                bundle = with_path(bundle, gain, detour, share)
-                recorded(record, hit, p, (-1, k), gain, share)
-        add_bundle(sums, r, bundle, arriving)
+                gain, distance = pair_gain(trace, edge, pair, slope, bounces)
+                gain = gain * common
+                counted(room, order + bounces, share)
+                bundle = with_path(bundle, gain, distance - block.straight, share, arriving)
+                if record.used[0] >= 0:
+                    recorded(record, (block.first, block.n), p, (-1, k), gain, share)
+        add_bundle(sums, block, bundle, room)

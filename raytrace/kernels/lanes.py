@@ -1,0 +1,141 @@
+"""Eight numbers side by side: what the field kernels compute with.
+
+A kernel that takes `Lanes` evaluates eight paths at once, in the vector registers of the processor.
+In Python they are arrays of eight; the functions here say in NumPy what each of them means, and
+`raytrace.kernels.vectors` tells numba how to compile them, and the operators, to single vector
+instructions. `tests/raytrace/test_lanes.py` holds one to the other.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+WIDTH = 8
+"""How many numbers lie side by side: a 512-bit register, or two of 256 bits."""
+
+Floats = NDArray[np.float64]
+Lanes = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+ComplexLanes = NDArray[np.complex128]
+
+
+def lanes_of(x: float) -> Lanes:
+    """Eight times the same number."""
+    return np.full(WIDTH, x)
+
+
+def load(row: Floats) -> Lanes:
+    """First eight numbers of a contiguous array."""
+    return row[:WIDTH].copy()
+
+
+def store(row: Floats, x: Lanes) -> None:
+    """Write eight numbers to the beginning of a contiguous array."""
+    row[:WIDTH] = x
+
+
+def lane(x: Lanes, k: int) -> float:
+    """Number k of the eight."""
+    return x[k]
+
+
+def sqrt(x: Lanes) -> Lanes:
+    """Square roots."""
+    return np.sqrt(x)
+
+
+def floor(x: Lanes) -> Lanes:
+    """Largest whole numbers not above."""
+    return np.floor(x)
+
+
+def absolute(x: Lanes) -> Lanes:
+    """Numbers without their signs."""
+    return np.abs(x)
+
+
+def minimum(a: Lanes, b: Lanes | float) -> Lanes:
+    """Smaller ones of each two."""
+    return np.minimum(a, b)
+
+
+def maximum(a: Lanes, b: Lanes | float) -> Lanes:
+    """Larger ones of each two."""
+    return np.maximum(a, b)
+
+
+def copysign(a: Lanes, b: Lanes) -> Lanes:
+    """Sizes of the first with the signs of the second."""
+    return np.copysign(a, b)
+
+
+def where(chosen: Mask, a: Lanes, b: Lanes) -> Lanes:
+    """Numbers of the first where chosen, of the second elsewhere."""
+    return np.where(chosen, a, b)
+
+
+def where_complex(chosen: Mask, a: ComplexLanes, b: ComplexLanes) -> ComplexLanes:
+    """`where` for complex numbers."""
+    return np.where(chosen, a, b)
+
+
+def none_chosen() -> Mask:
+    """Eight times not."""
+    return np.zeros(WIDTH, np.bool_)
+
+
+def any_of(chosen: Mask) -> bool:
+    """Whether there is one."""
+    return bool(chosen.any())
+
+
+def all_of(chosen: Mask) -> bool:
+    """Whether there are eight."""
+    return bool(chosen.all())
+
+
+def complex_of(real: Lanes, imag: Lanes) -> ComplexLanes:
+    """Complex numbers of their parts."""
+    return real + 1j * imag
+
+
+def real_of(x: ComplexLanes) -> Lanes:
+    """Real parts."""
+    return x.real
+
+
+def imag_of(x: ComplexLanes) -> Lanes:
+    """Imaginary parts."""
+    return x.imag
+
+
+def gather2(table: Floats, row: Lanes) -> tuple[Lanes, Lanes]:
+    """Two numbers from each of eight rows of a table of two columns."""
+    at = 2 * row.astype(np.int32)
+    flat = table.reshape(-1)
+    return flat[at], flat[at + 1]
+
+
+def gather_pairs1(table: Floats, row: Lanes) -> tuple[Lanes, Lanes]:
+    """The numbers at eight places of a table of one column, and the next ones."""
+    at = row.astype(np.int32)
+    flat = table.reshape(-1)
+    return flat[at], flat[at + 1]
+
+
+def gather_pairs2(table: Floats, row: Lanes) -> tuple[Lanes, Lanes, Lanes, Lanes]:
+    """Two numbers from each of eight rows of a table of two columns, and from the next rows."""
+    at = 2 * row.astype(np.int32)
+    flat = table.reshape(-1)
+    return flat[at], flat[at + 1], flat[at + 2], flat[at + 3]
+
+
+def gather_pairs4(
+    table: Floats, row: Lanes
+) -> tuple[Lanes, Lanes, Lanes, Lanes, Lanes, Lanes, Lanes, Lanes]:
+    """Four numbers from each of eight rows of a table of four columns, and from the next rows."""
+    at = 4 * row.astype(np.int32)
+    flat = table.reshape(-1)
+    return (
+        flat[at], flat[at + 1], flat[at + 2], flat[at + 3],
+        flat[at + 4], flat[at + 5], flat[at + 6], flat[at + 7],
+    )  # fmt: skip

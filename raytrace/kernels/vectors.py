@@ -1,0 +1,329 @@
+"""How numba compiles `raytrace.kernels.lanes`: to LLVM's vectors.
+
+Importing this module teaches numba three types, eight floats, eight complex numbers and eight
+truth values, with their operators and the functions of `lanes`.
+"""
+
+import operator
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.core.imputils import lower_builtin
+from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
+from numba.extending import models, register_model
+
+from raytrace.kernels import lanes
+from raytrace.kernels.lanes import WIDTH
+
+_DOUBLE = ir.DoubleType()
+_DOUBLES = ir.VectorType(_DOUBLE, WIDTH)
+_BITS = ir.VectorType(ir.IntType(1), WIDTH)
+_INTS = ir.VectorType(ir.IntType(32), WIDTH)
+
+
+class LanesType(types.Type):
+    """Eight floats."""
+
+
+class ComplexLanesType(types.Type):
+    """Eight complex numbers, their real and their imaginary parts side by side."""
+
+
+class MaskType(types.Type):
+    """Eight truth values."""
+
+
+LANES, COMPLEX, MASK = (t(n) for t, n in (
+    (LanesType, "lanes"), (ComplexLanesType, "complex_lanes"), (MaskType, "mask"),
+))  # fmt: skip
+FLOAT, COMPLEX_FLOAT = types.float64, types.complex128
+
+
+@register_model(LanesType)
+class _LanesModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, numba_type: types.Type) -> None:
+        super().__init__(manager, numba_type, _DOUBLES)
+
+
+@register_model(MaskType)
+class _MaskModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, numba_type: types.Type) -> None:
+        super().__init__(manager, numba_type, _BITS)
+
+
+@register_model(ComplexLanesType)
+class _ComplexLanesModel(models.StructModel):
+    def __init__(self, manager: Any, numba_type: types.Type) -> None:
+        super().__init__(manager, numba_type, [("real", LANES), ("imag", LANES)])
+
+
+Lower = Callable[[ir.IRBuilder, Sequence[Any]], Any]
+"""What writes the instructions: of a builder and the operands, real ones as vectors, complex ones
+as pairs of them."""
+
+
+def _spread(builder: ir.IRBuilder, number: ir.Value) -> ir.Value:
+    """Eight times a number."""
+    one = builder.insert_element(ir.Constant(_DOUBLES, ir.Undefined), number, _index(0))
+    zeros = ir.Constant(_INTS, [0] * WIDTH)
+    return builder.shuffle_vector(one, ir.Constant(_DOUBLES, ir.Undefined), zeros)
+
+
+def _index(k: int) -> ir.Constant:
+    return ir.Constant(ir.IntType(32), k)
+
+
+def _operand(context: Any, builder: ir.IRBuilder, kind: types.Type, value: ir.Value) -> Any:
+    """Value of a numba type as vectors, where it is a number."""
+    if kind == FLOAT:
+        return _spread(builder, value)
+    if kind in (COMPLEX, COMPLEX_FLOAT):
+        parts = cgutils.create_struct_proxy(kind)(context, builder, value=value)
+        pair = parts.real, parts.imag
+        return pair if kind == COMPLEX else tuple(_spread(builder, part) for part in pair)
+    return value
+
+
+def _teach(
+    function: Callable[..., Any], result: types.Type, *cases: tuple[types.Type, ...]
+) -> Callable[[Lower], Lower]:
+    """Decorate what compiles a function, of arguments of these types, to instructions."""
+
+    def decorate(write: Lower) -> Lower:
+        def lower(context: Any, builder: ir.IRBuilder, sig: Any, args: Sequence[ir.Value]) -> Any:
+            operands = [
+                _operand(context, builder, k, v) for k, v in zip(sig.args, args, strict=True)
+            ]
+            return _returned(context, builder, result, write(builder, operands))
+
+        for case in cases:
+            lower_builtin(function, *case)(lower)
+        template = type(
+            f"{function.__name__}_of_lanes",
+            (ConcreteTemplate,),
+            {"key": function, "cases": [signature(result, *case) for case in cases]},
+        )
+        infer_global(function)(template)
+        return write
+
+    return decorate
+
+
+def _returned(context: Any, builder: ir.IRBuilder, result: types.Type, value: Any) -> ir.Value:
+    """Value that numba expects of a function."""
+    if result == COMPLEX:
+        made = cgutils.create_struct_proxy(COMPLEX)(context, builder)
+        made.real, made.imag = value
+        return made._getvalue()
+    if isinstance(result, types.UniTuple):
+        return context.make_tuple(builder, result, value)
+    return context.get_dummy_value() if value is None else value
+
+
+def _with_numbers(own: types.Type, *others: types.Type) -> list[tuple[types.Type, types.Type]]:
+    """Pairs of operands: two of a type, or one of it and another on either side."""
+    return [(own, own), *((own, o) for o in others), *((o, own) for o in others)]
+
+
+_REAL_PAIRS = _with_numbers(LANES, FLOAT)
+_COMPLEX_PAIRS = _with_numbers(COMPLEX, COMPLEX_FLOAT)
+_MIXED_PAIRS = [(COMPLEX, LANES), (COMPLEX, FLOAT)]
+
+
+def _teach_operators() -> None:
+    """Arithmetic and comparisons."""
+    for name, write in {"add": "fadd", "sub": "fsub", "mul": "fmul", "truediv": "fdiv"}.items():
+        for op in (getattr(operator, name), getattr(operator, f"i{name}")):
+            _teach(op, LANES, *_REAL_PAIRS)(lambda b, x, w=write: getattr(b, w)(x[0], x[1]))
+    for name, write in {"add": "fadd", "sub": "fsub"}.items():
+        for op in (getattr(operator, name), getattr(operator, f"i{name}")):
+            _teach(op, COMPLEX, *_COMPLEX_PAIRS)(
+                lambda b, x, w=write: [getattr(b, w)(x[0][k], x[1][k]) for k in range(2)]
+            )
+    for op in (operator.mul, operator.imul):
+        _teach(op, COMPLEX, *_COMPLEX_PAIRS)(_product)
+        _teach(op, COMPLEX, *_MIXED_PAIRS)(lambda b, x: [b.fmul(part, x[1]) for part in x[0]])
+        _teach(op, COMPLEX, *((two, one) for one, two in _MIXED_PAIRS))(
+            lambda b, x: [b.fmul(x[0], part) for part in x[1]]
+        )
+    for sign, op in {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge,
+                     "==": operator.eq, "!=": operator.ne}.items():  # fmt: skip
+        _teach(op, MASK, *_REAL_PAIRS)(lambda b, x, s=sign: b.fcmp_ordered(s, x[0], x[1]))
+    for op, write in ((operator.and_, "and_"), (operator.or_, "or_")):
+        _teach(op, MASK, (MASK, MASK))(lambda b, x, w=write: getattr(b, w)(x[0], x[1]))
+    _teach(operator.invert, MASK, (MASK,))(lambda b, x: b.not_(x[0]))
+    _teach(operator.neg, LANES, (LANES,))(lambda b, x: b.fneg(x[0]))
+    _teach(operator.neg, COMPLEX, (COMPLEX,))(lambda b, x: [b.fneg(part) for part in x[0]])
+
+
+def _product(builder: ir.IRBuilder, x: Sequence[Any]) -> list[ir.Value]:
+    (a, b), (c, d) = x
+    m, add, subtract = builder.fmul, builder.fadd, builder.fsub
+    return [subtract(m(a, c), m(b, d)), add(m(a, d), m(b, c))]
+
+
+_teach_operators()
+_teach(lanes.lanes_of, LANES, (FLOAT,))(lambda b, x: x[0])
+_teach(lanes.lane, FLOAT, (LANES, types.intp))(lambda b, x: b.extract_element(x[0], x[1]))
+_teach(lanes.complex_of, COMPLEX, *_REAL_PAIRS)(lambda b, x: x)
+_teach(lanes.real_of, LANES, (COMPLEX,))(lambda b, x: x[0][0])
+_teach(lanes.imag_of, LANES, (COMPLEX,))(lambda b, x: x[0][1])
+_teach(lanes.where, LANES, *((MASK, *pair) for pair in _REAL_PAIRS))(
+    lambda b, x: b.select(x[0], x[1], x[2])
+)
+_teach(lanes.where_complex, COMPLEX, *((MASK, *pair) for pair in _COMPLEX_PAIRS))(
+    lambda b, x: [b.select(x[0], x[1][k], x[2][k]) for k in range(2)]
+)
+
+
+def _intrinsic(function: Callable[..., Any], name: str, *cases: tuple[types.Type, ...]) -> None:
+    """Compile a function to LLVM's intrinsic of that name."""
+
+    def write(builder: ir.IRBuilder, x: Sequence[Any]) -> ir.Value:
+        kind = ir.FunctionType(_DOUBLES, [_DOUBLES] * len(x))
+        called = cgutils.get_or_insert_function(
+            builder.module, kind, f"llvm.{name}.v{WIDTH}f64"
+        )
+        return builder.call(called, x)
+
+    _teach(function, LANES, *cases)(write)
+
+
+_intrinsic(lanes.sqrt, "sqrt", (LANES,))
+_intrinsic(lanes.floor, "floor", (LANES,))
+_intrinsic(lanes.absolute, "fabs", (LANES,))
+_intrinsic(lanes.copysign, "copysign", *_REAL_PAIRS)
+_teach(lanes.minimum, LANES, *_REAL_PAIRS)(
+    lambda b, x: b.select(b.fcmp_ordered("<", x[0], x[1]), x[0], x[1])
+)
+_teach(lanes.maximum, LANES, *_REAL_PAIRS)(
+    lambda b, x: b.select(b.fcmp_ordered(">", x[0], x[1]), x[0], x[1])
+)
+
+
+_teach(lanes.none_chosen, MASK, ())(lambda b, x: ir.Constant(_BITS, [0] * WIDTH))
+
+
+def _as_byte(builder: ir.IRBuilder, mask: ir.Value) -> ir.Value:
+    return builder.bitcast(mask, ir.IntType(WIDTH))
+
+
+@_teach(lanes.any_of, types.boolean, (MASK,))
+def _any(builder: ir.IRBuilder, x: Sequence[Any]) -> ir.Value:
+    return builder.icmp_unsigned("!=", _as_byte(builder, x[0]), ir.Constant(ir.IntType(WIDTH), 0))
+
+
+@_teach(lanes.all_of, types.boolean, (MASK,))
+def _all(builder: ir.IRBuilder, x: Sequence[Any]) -> ir.Value:
+    return builder.icmp_unsigned("==", _as_byte(builder, x[0]), ir.Constant(ir.IntType(WIDTH), -1))
+
+
+def _teach_memory(
+    function: Callable[..., Any],
+    result: types.Type,
+    dimensions: int,
+    write: Callable[[ir.IRBuilder, ir.Value, Sequence[ir.Value]], Any],
+) -> None:
+    """Teach numba a function whose first argument is an array; it is given as a pointer."""
+    with_lanes = (LANES,) if function is not lanes.load else ()
+    cases = [(types.Array(FLOAT, dimensions, "C", readonly=r), *with_lanes) for r in (False, True)]
+
+    def lower(context: Any, builder: ir.IRBuilder, sig: Any, args: Sequence[ir.Value]) -> Any:
+        array = context.make_array(sig.args[0])(context, builder, value=args[0])
+        return _returned(context, builder, result, write(builder, array.data, args[1:]))
+
+    for case in cases:
+        lower_builtin(function, *case)(lower)
+    template = type(
+        f"{function.__name__}_of_lanes",
+        (ConcreteTemplate,),
+        {"key": function, "cases": [signature(result, *case) for case in cases]},
+    )
+    infer_global(function)(template)
+
+
+def _load(builder: ir.IRBuilder, data: ir.Value, args: Sequence[ir.Value]) -> ir.Value:
+    return builder.load(builder.bitcast(data, _DOUBLES.as_pointer()), align=8)
+
+
+def _store(builder: ir.IRBuilder, data: ir.Value, args: Sequence[ir.Value]) -> None:
+    builder.store(args[0], builder.bitcast(data, _DOUBLES.as_pointer()), align=8)
+
+
+def _gather(columns: int, stride: int) -> Callable[..., list[ir.Value]]:
+    """Write the loads of so many numbers from each of eight rows, and their transposition."""
+
+    def write(builder: ir.IRBuilder, data: ir.Value, args: Sequence[ir.Value]) -> list[ir.Value]:
+        row = ir.VectorType(_DOUBLE, columns)
+        rows = builder.fptosi(args[0], _INTS)
+        loaded: list[ir.Value] = []
+        for k in range(WIDTH):
+            at = builder.sext(builder.extract_element(rows, _index(k)), ir.IntType(64))
+            at = builder.mul(at, ir.Constant(ir.IntType(64), stride))
+            place = builder.bitcast(builder.gep(data, [at]), row.as_pointer())
+            loaded.append(builder.load(place, align=8))
+        return _transposed(builder, loaded)
+
+    return write
+
+
+def _transposed(builder: ir.IRBuilder, rows: Sequence[ir.Value]) -> list[ir.Value]:
+    """Vectors of the first, second, ... numbers of eight rows of 2, 4 or 8."""
+    if rows[0].type.count == 2:
+        even, odd = (_joined(builder, [rows[k] for k in (s, s + 2, s + 4, s + 6)]) for s in (0, 1))
+        return _unpacked(builder, even, odd)
+    if rows[0].type.count == 4:
+        one = [_joined(builder, [rows[k], rows[k + 2]]) for k in (0, 1, 4, 5)]
+        low = _unpacked(builder, one[0], one[1])
+        high = _unpacked(builder, one[2], one[3])
+        halves = [_quartered(builder, low[k], high[k]) for k in range(2)]
+        return [halves[0][0], halves[1][0], halves[0][1], halves[1][1]]
+    twos = [_unpacked(builder, rows[k], rows[k + 1]) for k in (0, 2, 4, 6)]
+    result: list[Any] = [None] * 8
+    for odd in range(2):
+        low = _quartered(builder, twos[0][odd], twos[1][odd])
+        high = _quartered(builder, twos[2][odd], twos[3][odd])
+        for part in range(2):
+            result[2 * part + odd], result[2 * part + odd + 4] = _quartered(
+                builder, low[part], high[part]
+            )
+    return result
+
+
+def _shuffled(builder: ir.IRBuilder, a: ir.Value, b: ir.Value, take: Sequence[int]) -> ir.Value:
+    mask = ir.Constant(ir.VectorType(ir.IntType(32), len(take)), list(take))
+    return builder.shuffle_vector(a, b, mask)
+
+
+def _joined(builder: ir.IRBuilder, parts: Sequence[ir.Value]) -> ir.Value:
+    """Short vectors one behind the other."""
+    while len(parts) > 1:
+        n = parts[0].type.count
+        parts = [_shuffled(builder, a, b, range(2 * n)) for a, b in zip(parts[::2], parts[1::2])]
+    return parts[0]
+
+
+def _unpacked(builder: ir.IRBuilder, a: ir.Value, b: ir.Value) -> list[ir.Value]:
+    """Numbers of two vectors in turn: the even ones, and the odd ones."""
+    return [
+        _shuffled(builder, a, b, [x for k in range(odd, 8, 2) for x in (k, k + 8)])
+        for odd in range(2)
+    ]
+
+
+def _quartered(builder: ir.IRBuilder, a: ir.Value, b: ir.Value) -> list[ir.Value]:
+    """First and third pairs of two vectors, and the second and fourth ones."""
+    return [
+        _shuffled(builder, a, b, [o + k for o in (0, 4, 8, 12) for k in (2 * s, 2 * s + 1)])
+        for s in range(2)
+    ]
+
+
+_teach_memory(lanes.load, LANES, 1, _load)
+_teach_memory(lanes.store, types.none, 1, _store)
+_teach_memory(lanes.gather2, types.UniTuple(LANES, 2), 2, _gather(2, 2))
+_teach_memory(lanes.gather_pairs1, types.UniTuple(LANES, 2), 1, _gather(2, 1))
+_teach_memory(lanes.gather_pairs2, types.UniTuple(LANES, 4), 2, _gather(4, 2))
+_teach_memory(lanes.gather_pairs4, types.UniTuple(LANES, 8), 2, _gather(8, 4))
