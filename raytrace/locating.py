@@ -8,6 +8,7 @@ from raytrace.kernels.beams import (
     edge_side,
     enlarged,
     most_corners,
+    resized,
     share_within,
 )
 from raytrace.kernels.compiling import jit
@@ -56,7 +57,7 @@ def cells_around(view: PlanView, xy: Floats) -> tuple[Ints, Floats]:
             n += 1
             if touched == 0:
                 break
-    return places[:n].copy(), share[:n, 0].copy()
+    return resized(places, n), resized(share, n)[:, 0]
 
 
 @jit()

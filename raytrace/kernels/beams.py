@@ -82,13 +82,19 @@ class Hits(NamedTuple):
 
 
 @jit()
-def enlarged(rows: Rows) -> Rows:
-    """Copy of an array with room for twice as many rows."""
-    more: Any = np.empty((2 * len(rows), rows.shape[1]), rows.dtype)
-    for i in range(rows.shape[0]):
+def resized(rows: Rows, n: int) -> Rows:
+    """Copy of the first rows of an array, with room for n; one kernel for all that grow."""
+    more: Any = np.empty((n, rows.shape[1]), rows.dtype)
+    for i in range(min(n, rows.shape[0])):
         for k in range(rows.shape[1]):
             more[i, k] = rows[i, k]
     return more
+
+
+@jit()
+def enlarged(rows: Rows) -> Rows:
+    """Copy of an array with room for twice as many rows."""
+    return resized(rows, 2 * len(rows))
 
 
 @jit(inner=True)
@@ -133,7 +139,7 @@ def grow_tree(
             link, beam = enlarged(link), enlarged(beam)
         n = split(view, bounces, link, beam, i, n, most)
         i += 1
-    return Tree(link[:n].copy(), beam[:n].copy())
+    return Tree(resized(link, n), resized(beam, n))
 
 
 @jit(inner=True)
@@ -402,7 +408,7 @@ def hit_points(view: PlanView, tree: Tree, targets: Targets) -> Hits:
             if lit > 0.0:
                 pair[n, 0], pair[n, 1], share[n, 0] = point, i, lit
                 n += 1
-    return Hits(pair[:n].copy(), share[:n, 0].copy())
+    return Hits(resized(pair, n), resized(share, n)[:, 0])
 
 
 @jit()
@@ -428,7 +434,7 @@ def hit_corners(view: PlanView, tree: Tree) -> Hits:
                 pair, share = enlarged(pair), enlarged(share)
             pair[n, 0], pair[n, 1], share[n, 0] = v, i, lit
             n += 1
-    return Hits(pair[:n].copy(), share[:n, 0].copy())
+    return Hits(resized(pair, n), resized(share, n)[:, 0])
 
 
 @jit()
@@ -460,7 +466,7 @@ def hit_partial_walls(view: PlanView, tree: Tree) -> tuple[NDArray[np.int32], Fl
             stretch[n, 0] = fraction(view, tree.beam[i], e, rx, ry)
             stretch[n, 1] = fraction(view, tree.beam[i], e, lx, ly)
             n += 1
-    return hits[:n].copy(), stretch[:n].copy()
+    return resized(hits, n), resized(stretch, n)
 
 
 @jit(inline=True)

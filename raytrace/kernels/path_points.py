@@ -107,19 +107,19 @@ def add_leg(
 
 
 @jit()
-def start_path(trace: Trace, points: Floats, kinds: NDArray[np.int8]) -> int:
+def start_path(trace: Trace, points: Floats) -> int:
     """Write the source as the first point."""
-    points[:] = 0.0
-    kinds[:] = NOTHING
-    points[0] = trace.source
+    for k in range(3):
+        points[0, k] = trace.source[k]
     return 1
 
 
 @jit()
 def finish_path(trace: Trace, r: int, points: Floats, k: int) -> None:
     """Write the receiver as the last point, and again behind it."""
-    points[k:, 0], points[k:, 1] = trace.receivers[r, 0], trace.receivers[r, 1]
-    points[k:, 2] = trace.image_z[trace.level[r], 0]
+    for end in range(k, len(points)):
+        points[end, 0], points[end, 1] = trace.receivers[r, 0], trace.receivers[r, 1]
+        points[end, 2] = trace.image_z[trace.level[r], 0]
 
 
 @jit()
@@ -149,7 +149,7 @@ def reflection_points(
         end = (trace.receivers[r, 0], trace.receivers[r, 1])
         n, length = unfold_one(trace.plan, tree, i, end, leg)
         slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / length
-        k = start_path(trace, points[path], kinds[path])
+        k = start_path(trace, points[path])
         heights = (z, slope, trace.radio.height)
         k = add_leg(trace.plan, (leg, n, length), heights, end, points[path], kinds[path], k)
         finish_path(trace, r, points[path], k)
@@ -179,7 +179,7 @@ def upright_points(
         slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / (length_in + length)
         z_edge = z + slope * length_in
         row, kind = points[path], kinds[path]
-        k = start_path(trace, row, kind)
+        k = start_path(trace, row)
         at = (edge.x, edge.y)
         k = add_leg(trace.plan, (leg_in, n_in, length_in), (z, slope, height), at, row, kind, k)
         k = add_point(row, kind, k, DIFFRACTION, (edge.x, edge.y, folded(z_edge, height)))
@@ -221,7 +221,7 @@ def level_points(
         at = from_frame(rim.frame, u)
         slope = (-rise_in if bounces[a] & 1 else rise_in) / length_in
         row, kind = points[path], kinds[path]
-        k = start_path(trace, row, kind)
+        k = start_path(trace, row)
         heights = (trace.source[2], slope, height)
         k = add_leg(trace.plan, (work.leg_in, n_in, length_in), heights, at, row, kind, k)
         k = add_point(row, kind, k, DIFFRACTION, (at[0], at[1], rim.z))

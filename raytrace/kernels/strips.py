@@ -5,6 +5,7 @@ point (u, m): it leaves at x = u with x = u + m h. The rays that pass between tw
 convex polygon there, which is clipped exactly (docs/theory.md, section 6).
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,7 @@ from raytrace.kernels.beams import (
     enlarged,
     leads_on,
     most_children,
+    resized,
 )
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView
@@ -63,7 +65,7 @@ class StripTree(NamedTuple):
 def edge_frame(view: PlanView, e: int) -> Floats:
     """Frame (7,) of an edge of the plan view, h into its cell."""
     x1, y1, x2, y2 = view.ends[e, 0], view.ends[e, 1], view.ends[e, 2], view.ends[e, 3]
-    length = np.hypot(x2 - x1, y2 - y1)
+    length = math.hypot(x2 - x1, y2 - y1)
     tx, ty = (x2 - x1) / length, (y2 - y1) / length
     frame = np.empty(7)
     frame[0], frame[1], frame[2] = tx, ty, -(tx * x1 + ty * y1)
@@ -283,7 +285,9 @@ def grow_strips(
     rays = np.empty((4096, 2))
     work, out = np.empty((256, 2)), np.empty((256, 2))
     link[0, PARENT], link[0, EDGE], link[0, CELL] = -1, root, root_cell
-    frame[0] = edge_frame(view, root)
+    root_frame = edge_frame(view, root)
+    for k in range(len(root_frame)):
+        frame[0, k] = root_frame[k]
     length, _ = in_frame(frame[0], view.ends[root, 2], view.ends[root, 3])
     write_box(rays, length)
     first[1, 0] = 4
@@ -302,7 +306,7 @@ def grow_strips(
         n = split_strip(view, bounces, tree, i, n, most, (work, out))
         i += 1
     return StripTree(
-        link[:n].copy(), frame[:n].copy(), first[: n + 1, 0].copy(), rays[: first[n, 0]].copy()
+        resized(link, n), resized(frame, n), resized(first, n + 1)[:, 0], resized(rays, first[n, 0])
     )
 
 
@@ -336,7 +340,7 @@ def hit_from_strip(tree: StripTree, targets: Targets) -> tuple[Hits, Floats]:
             pair[n, 0], pair[n, 1], share[n, 0] = point, i, targets.share[k]
             seen[n, 0], seen[n, 1], seen[n, 2], seen[n, 3] = x, h, low, high
             n += 1
-    return Hits(pair[:n].copy(), share[:n, 0].copy()), seen[:n].copy()
+    return Hits(resized(pair, n), resized(share, n)[:, 0]), resized(seen, n)
 
 
 @jit(inner=True)
