@@ -4,6 +4,7 @@ Each family is a job: it grows its own beams, adds its paths to sums, and can wr
 one by one.
 """
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Protocol
 
@@ -17,7 +18,7 @@ from raytrace.kernels.path_points import level_points, reflection_points, uprigh
 from raytrace.kernels.plan_view import TIE_M
 from raytrace.kernels.reflections import sum_reflections
 from raytrace.kernels.strips import StripTree, edge_frame, grow_strips, hit_from_strip
-from raytrace.kernels.tracing import Record, Sums, new_room
+from raytrace.kernels.tracing import Record, Sums, new_room, no_record
 from raytrace.kernels.unfolding import most_items
 from raytrace.kernels.upright_edges import Edge, LegsIn, legs_to_edge, sum_upright_edge
 from raytrace.kernels.utd import new_wedge
@@ -25,11 +26,18 @@ from raytrace.preparing import Tracing
 
 Floats = NDArray[np.float64]
 
+HITS_AT_ONCE = 1 << 17
+"""Receivers in beams are looked up so many at a time, which bounds the memory of large maps."""
+
 
 class Family(Protocol):
     """Some of the paths of a trace."""
 
-    def add_to(self, sums: Sums, record: Record) -> None:
+    def add_to(self, sums: Sums) -> None:
+        """Add the paths to sums."""
+        ...
+
+    def write_to(self, sums: Sums, record: Record) -> None:
         """Add the paths to sums, and to a record as far as it has room."""
         ...
 
@@ -51,14 +59,21 @@ class Reflections:
     @cached_property
     def _hits(self) -> Hits:
         t = self._tracing
-        return hit_points(t.trace.plan, t.tree, t.targets)
+        return all_hits(t, t.tree)
 
-    def add_to(self, sums: Sums, record: Record) -> None:
+    def add_to(self, sums: Sums) -> None:
         """See `Family`."""
-        tree = self._tracing.tree
-        trace = self._tracing.trace
+        for hits in hits_in_lots(self._tracing, self._tracing.tree):
+            self._sum(hits, sums, no_record())
+
+    def write_to(self, sums: Sums, record: Record) -> None:
+        """See `Family`."""
+        self._sum(self._hits, sums, record)
+
+    def _sum(self, hits: Hits, sums: Sums, record: Record) -> None:
+        trace, tree = self._tracing.trace, self._tracing.tree
         room = new_room(trace.max_order, most_items(tree.link))
-        sum_reflections(trace, tree, self._hits, room, sums, record)
+        sum_reflections(trace, tree, hits, room, sums, record)
 
     def receivers_of(self, record: Record) -> NDArray[np.int64]:
         """See `Family`."""
@@ -97,29 +112,39 @@ class OverUprightEdge:
         return legs_to_edge(self._tracing.trace, tree, beams, share, self._edge)
 
     @cached_property
-    def _lit(self) -> tuple[Tree, Hits]:
-        t = self._tracing
-        budget = t.config.max_reflections - int(self._legs_in.order[0])
-        most, view = (budget, t.config.max_transmissions), t.trace.plan
-        tree = grow_tree(view, t.bounces, self._edge.x, self._edge.y, self._cells, most)
-        return tree, hit_points(view, tree, t.targets)
+    def _tree(self) -> Tree:
+        t, lowest = self._tracing, self._legs_in.order[:1].sum()
+        most = t.config.max_reflections - int(lowest), t.config.max_transmissions
+        return grow_tree(t.trace.plan, t.bounces, self._edge.x, self._edge.y, self._cells, most)
 
-    def add_to(self, sums: Sums, record: Record) -> None:
+    @cached_property
+    def _hits(self) -> Hits:
+        return all_hits(self._tracing, self._tree)
+
+    def add_to(self, sums: Sums) -> None:
         """See `Family`."""
         if len(self._legs_in.order):
-            legs, (tree, hits) = self._legs_in, self._lit
-            trace = self._tracing.trace
-            room = new_room(trace.max_order, most_items(tree.link))
-            sum_upright_edge(trace, self._edge, legs, tree, hits, room, sums, record)
+            for hits in hits_in_lots(self._tracing, self._tree):
+                self._sum(hits, sums, no_record())
+
+    def write_to(self, sums: Sums, record: Record) -> None:
+        """See `Family`."""
+        if len(self._legs_in.order):
+            self._sum(self._hits, sums, record)
+
+    def _sum(self, hits: Hits, sums: Sums, record: Record) -> None:
+        trace, legs, tree = self._tracing.trace, self._legs_in, self._tree
+        room = new_room(trace.max_order, most_items(tree.link))
+        sum_upright_edge(trace, self._edge, legs, tree, hits, room, sums, record)
 
     def receivers_of(self, record: Record) -> NDArray[np.int64]:
         """See `Family`."""
-        return _receivers(self._lit[1], record)
+        return _receivers(self._hits, record)
 
     def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
         """See `Family`."""
-        trace, (tree, hits) = self._tracing.trace, self._lit
-        upright_points(trace, self._edge, self._legs_in, tree, hits, record, points, kinds)
+        trace, legs, tree = self._tracing.trace, self._legs_in, self._tree
+        upright_points(trace, self._edge, legs, tree, self._hits, record, points, kinds)
 
 
 class OverLevelEdge:
@@ -156,32 +181,62 @@ class OverLevelEdge:
         )
 
     @cached_property
-    def _lit(self) -> tuple[StripTree, tuple[Hits, Floats]]:
-        t = self._tracing
-        view = t.trace.plan
+    def _strips(self) -> StripTree:
+        t, view = self._tracing, self._tracing.trace.plan
         cell = int(np.searchsorted(view.cell_edges, self._near, side="right")) - 1
-        budget = t.config.max_reflections - int(self._legs_in.order[0])
-        strips = grow_strips(
-            view, t.bounces, self._near, cell, (budget, t.config.max_transmissions)
-        )
-        return strips, hit_from_strip(strips, t.targets)
+        most = t.config.max_reflections - int(self._legs_in.order[0]), t.config.max_transmissions
+        return grow_strips(view, t.bounces, self._near, cell, most)
 
-    def add_to(self, sums: Sums, record: Record) -> None:
+    @cached_property
+    def _lit(self) -> tuple[Hits, Floats]:
+        return hit_from_strip(self._strips, self._tracing.targets, 0, ALL_HITS)[:2]
+
+    def add_to(self, sums: Sums) -> None:
         """See `Family`."""
-        if len(self._legs_in.order):
-            source, (strips, lit) = (self._tracing.tree, self._legs_in), self._lit
-            trace = self._tracing.trace
-            work = new_work(trace.max_order, self._tracing.tree, strips)
-            sum_level_edge(trace, self._rim, source, strips, lit, work, sums, record)
+        following, strips, targets = 0, self._strips, self._tracing.targets
+        while following < len(strips.link):
+            hits, seen, following = hit_from_strip(strips, targets, following, HITS_AT_ONCE)
+            self._sum((hits, seen), sums, no_record())
+
+    def write_to(self, sums: Sums, record: Record) -> None:
+        """See `Family`."""
+        self._sum(self._lit, sums, record)
+
+    def _sum(self, lit: tuple[Hits, Floats], sums: Sums, record: Record) -> None:
+        trace, strips, source = self._tracing.trace, self._strips, self._source
+        work = new_work(trace.max_order, source[0], strips)
+        sum_level_edge(trace, self._rim, source, strips, lit, work, sums, record)
+
+    @property
+    def _source(self) -> tuple[Tree, RimLegsIn]:
+        return self._tracing.tree, self._legs_in
 
     def receivers_of(self, record: Record) -> NDArray[np.int64]:
         """See `Family`."""
-        return _receivers(self._lit[1][0], record)
+        return _receivers(self._lit[0], record)
 
     def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
         """See `Family`."""
-        source, (strips, lit) = (self._tracing.tree, self._legs_in), self._lit
-        level_points(self._tracing.trace, self._rim, source, strips, lit, record, points, kinds)
+        trace, strips, lit = self._tracing.trace, self._strips, self._lit
+        level_points(trace, self._rim, self._source, strips, lit, record, points, kinds)
+
+
+ALL_HITS = 1 << 62
+
+
+def all_hits(tracing: Tracing, tree: Tree) -> Hits:
+    """Receivers in the beams of a tree."""
+    return hit_points(tracing.trace.plan, tree, tracing.targets, 0, ALL_HITS)[0]
+
+
+def hits_in_lots(tracing: Tracing, tree: Tree) -> Iterator[Hits]:
+    """Receivers in the beams of a tree, some at a time."""
+    following = 0
+    while following < len(tree.link):
+        hits, following = hit_points(
+            tracing.trace.plan, tree, tracing.targets, following, HITS_AT_ONCE
+        )
+        yield hits
 
 
 def _receivers(hits: Hits, record: Record) -> NDArray[np.int64]:
@@ -189,11 +244,22 @@ def _receivers(hits: Hits, record: Record) -> NDArray[np.int64]:
 
 
 def all_families(tracing: Tracing) -> list[Family]:
-    """Return the families that together hold every path of a trace, each path once."""
+    """Return the families that together hold every path of a trace, each path once.
+
+    Edges that the source does not light are left out; the most lit ones come first, so that
+    threads have about the same to do.
+    """
     families: list[Family] = [Reflections(tracing)]
-    if tracing.config.max_diffractions:
-        families += [OverUprightEdge(tracing, e) for e in tracing.scene.upright_edges]
-        families += [
-            OverLevelEdge(tracing, e, side) for e in tracing.scene.level_edges for side in (0, 1)
-        ]
-    return families
+    if not tracing.config.max_diffractions:
+        return families
+    view = tracing.trace.plan
+    lit = np.bincount(tracing.corners.pair[:, 0], minlength=int(view.vertex.max()) + 1)
+    rims = np.bincount(tracing.rims[:, 0], minlength=len(view.line))
+    upright = [(lit[e.vertex], OverUprightEdge(tracing, e)) for e in tracing.scene.upright_edges]
+    level = [
+        (rims[list(e.plan_edges)].sum(), OverLevelEdge(tracing, e, side))
+        for e in tracing.scene.level_edges
+        for side in (0, 1)
+    ]
+    by_legs = sorted([*upright, *level], key=lambda counted: -counted[0])
+    return families + [family for n_legs, family in by_legs if n_legs]

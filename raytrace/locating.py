@@ -12,6 +12,7 @@ from raytrace.kernels.beams import (
     share_within,
 )
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.lanes import WIDTH
 from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView, material_at
 
 
@@ -79,7 +80,9 @@ def targets_in(view: PlanView, xy: Floats, wanted: NDArray[np.bool_]) -> Targets
     kept = np.flatnonzero(wanted[places[:, 0]] & (share > 0.0))
     kept = kept[np.argsort(places[kept, 1], kind="stable")]
     per_cell = np.bincount(places[kept, 1], minlength=len(view.cell_edges) - 1)
-    return Targets(np.concatenate([[0], np.cumsum(per_cell)]), places[kept, 0], share[kept], xy)
+    number = places[kept, 0]
+    x, y = (np.append(column[number], np.zeros(WIDTH)) for column in xy.T)
+    return Targets(np.concatenate([[0], np.cumsum(per_cell)]), number, share[kept], x, y)
 
 
 def bounces_needed(

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.families import Family, all_families
-from raytrace.kernels.tracing import STRONGEST, Sums, new_sums, no_record
+from raytrace.kernels.tracing import STRONGEST, Sums, new_sums
 from raytrace.preparing import Tracing
 
 Floats = NDArray[np.float64]
@@ -80,7 +80,7 @@ def _in_order(tracing: Tracing, families: deque[Family], threads: int) -> Iterat
 
     def sums_of(family: Family) -> Sums:
         sums = new_sums(len(tracing.trace.receivers), tracing.config.max_reflections)
-        family.add_to(sums, no_record())
+        family.add_to(sums)
         return sums
 
     pool = ThreadPoolExecutor(threads)

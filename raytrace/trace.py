@@ -81,14 +81,14 @@ def _write_out(tracing: Tracing, family: Family) -> Paths:
     config = tracing.config
     sums = new_sums(len(tracing.trace.receivers), config.max_reflections)
     count = new_record(0)
-    family.add_to(sums, count)
+    family.write_to(sums, count)
     n = int(count.used[0])
     record = new_record(n)
     most = config.max_reflections + config.max_diffractions + config.max_transmissions
     points = np.zeros((n, most + 2, 3))
     kinds = np.zeros((n, most), np.int8)
     if n:
-        family.add_to(new_sums(len(tracing.trace.receivers), config.max_reflections), record)
+        family.write_to(new_sums(len(tracing.trace.receivers), config.max_reflections), record)
         family.write_points(record, points, kinds)
     length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
     receiver = family.receivers_of(record) if n else np.empty(0, np.int64)

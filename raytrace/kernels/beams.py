@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.lanes import WIDTH, Lanes, any_of, lanes_of, load, minimum, store
 from raytrace.kernels.plan_view import (
     PARTIAL,
     TIE_M,
@@ -56,14 +57,15 @@ class Targets(NamedTuple):
         (n,) which point.
     share
         (n,) how much of its surroundings is in the cell.
-    xy
-        (n_points, 2) all points [m].
+    x, y
+        (n + 8,) where it is [m]; room to load eight from each.
     """
 
     cell_points: Ints
     number: Ints
     share: Floats
-    xy: Floats
+    x: Floats
+    y: Floats
 
 
 class Hits(NamedTuple):
@@ -368,14 +370,14 @@ def lit_share(
 
 
 @jit(inline=True)
-def is_beside(tree: Tree, i: int, x: float, y: float) -> bool:
-    """Whether a point is outside beam i's window for sure, which is quick to tell."""
-    px, py = tree.beam[i, IMAGE_X], tree.beam[i, IMAGE_Y]
-    dx, dy = x - px, y - py
-    ax, ay = tree.beam[i, RIGHT_X] - px, tree.beam[i, RIGHT_Y] - py
-    bx, by = tree.beam[i, LEFT_X] - px, tree.beam[i, LEFT_Y] - py
-    near = -2.0 * TIE_M * (abs(ax) + abs(ay) + abs(bx) + abs(by))
-    return cross(ax, ay, dx, dy) < near or cross(dx, dy, bx, by) < near
+def inside_window(beam: Floats, x: Lanes, y: Lanes) -> Lanes:
+    """How far [m] points lie inside the nearer border of a beam's window (see `window_side`)."""
+    px, py = beam[IMAGE_X], beam[IMAGE_Y]
+    nearest = lanes_of(math.inf)
+    for side in range(2):
+        _, nx, ny = window_side(beam, px, py, side)
+        nearest = minimum(nearest, nx * (x - px) + ny * (y - py))
+    return nearest
 
 
 @jit(inner=True)
@@ -388,27 +390,51 @@ def most_corners(view: PlanView) -> int:
 
 
 @jit()
-def hit_points(view: PlanView, tree: Tree, targets: Targets) -> Hits:
-    """Every lit point with the beam that lights it, beam after beam."""
+def hit_points(
+    view: PlanView, tree: Tree, targets: Targets, first: int, most: int
+) -> tuple[Hits, int]:
+    """Lit points with the beams that light them, beam after beam.
+
+    Parameters
+    ----------
+    view, tree, targets
+        The plan view, the beams and the points.
+    first, most
+        Beam to begin with, and how many hits are enough: the last beam is done with, though.
+
+    Returns
+    -------
+    hits, following
+        The hits, and the beam to go on with.
+    """
     pair, share = np.empty((1024, 2), np.int32), np.empty((1024, 1))
-    ways = np.empty((2 + most_corners(view), 2))
-    n = 0
-    for i in range(len(tree.link)):
+    ways, inside = np.empty((2 + most_corners(view), 2)), np.empty(WIDTH)
+    n, i = 0, first
+    while i < len(tree.link) and n < most:
         cell, is_root = tree.link[i, CELL], tree.link[i, EDGE] < 0
-        first, last = targets.cell_points[cell], targets.cell_points[cell + 1]
-        while n + last - first > len(pair):
-            pair, share = enlarged(pair), enlarged(share)
-        for k in range(first, last):
-            point = targets.number[k]
-            x, y = targets.xy[point, 0], targets.xy[point, 1]
-            if not is_root and is_beside(tree, i, x, y):
-                continue
-            border = cell if targets.share[k] < 1.0 else -1
-            lit = lit_share(view, tree, i, x, y, border, ways)
-            if lit > 0.0:
-                pair[n, 0], pair[n, 1], share[n, 0] = point, i, lit
-                n += 1
-    return Hits(resized(pair, n), resized(share, n)[:, 0])
+        last = targets.cell_points[cell + 1]
+        for k in range(targets.cell_points[cell], last, WIDTH):
+            nearest = lanes_of(math.inf)
+            if not is_root:
+                x, y = load(targets.x[k:]), load(targets.y[k:])
+                nearest = inside_window(tree.beam[i], x, y)
+                if not any_of(nearest > -TIE_M):
+                    continue
+            store(inside, nearest)
+            if n + WIDTH > len(pair):
+                pair, share = enlarged(pair), enlarged(share)
+            for at in range(k, min(k + WIDTH, last)):
+                if inside[at - k] <= -TIE_M:
+                    continue
+                lit = 1.0
+                if inside[at - k] < TIE_M or targets.share[at] < 1.0:
+                    border = cell if targets.share[at] < 1.0 else -1
+                    lit = lit_share(view, tree, i, targets.x[at], targets.y[at], border, ways)
+                if lit > 0.0:
+                    pair[n, 0], pair[n, 1], share[n, 0] = targets.number[at], i, lit
+                    n += 1
+        i += 1
+    return Hits(resized(pair, n), resized(share, n)[:, 0]), i
 
 
 @jit()

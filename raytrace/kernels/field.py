@@ -9,14 +9,10 @@ rays that meet the same walls are carried side by side.
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
-    Mask,
     absolute,
     any_of,
     complex_of,
@@ -24,14 +20,11 @@ from raytrace.kernels.lanes import (
     floor,
     gather2,
     gather_pairs1,
-    gather_pairs2,
     gather_pairs4,
-    imag_of,
     lanes_of,
     load,
     maximum,
     minimum,
-    real_of,
     sqrt,
     where,
     where_complex,
@@ -217,9 +210,7 @@ def new_ray(radio: Radio, slope: Lanes, bounces: int) -> Ray:
         ceiling_tm, ceiling_te = floor_tm, floor_te
         if radio.ceiling != radio.floor:
             ceiling_tm, ceiling_te = both_reflections(radio, radio.ceiling, absolute(sin_el))
-    return Ray(
-        slope, stretch, cos_el, sin_el, bounces, floor_tm, floor_te, ceiling_tm, ceiling_te
-    )
+    return Ray(slope, stretch, cos_el, sin_el, bounces, floor_tm, floor_te, ceiling_tm, ceiling_te)
 
 
 EDGE_OF_STOREY = 1e-9
@@ -320,14 +311,10 @@ def carried(
         if kind == REFLECT_PARTIAL:
             slab = solid_at(view, leg.marks[k, WHAT], in_building(z, radio.height))
         normal = load(leg.items[k, NORMAL])
-        tm, mix = slab_lookup(
-            radio.slabs, radio.slab_rows, slab, absolute(normal) * ray.cos_el
-        )
+        tm, mix = slab_lookup(radio.slabs, radio.slab_rows, slab, absolute(normal) * ray.cos_el)
         a, b = load(leg.items[k, SKEW]), -normal * wave.rising
         t = (wave.upright * a + wave.level * b) * mix
-        wave = Wave(
-            t * a - tm * wave.upright, tm * wave.level - t * b, wave.rising, wave.done
-        )
+        wave = Wave(t * a - tm * wave.upright, tm * wave.level - t * b, wave.rising, wave.done)
     return bounced(ray, (z_root + ray.slope * length) * per_height, wave)
 
 

@@ -6,6 +6,8 @@ In Python they are arrays of eight; the functions here say in NumPy what each of
 instructions. `tests/raytrace/test_lanes.py` holds one to the other.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +18,9 @@ Floats = NDArray[np.float64]
 Lanes = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 ComplexLanes = NDArray[np.complex128]
+
+Number = Any
+"""A float or eight: what a kernel takes that is compiled for both."""
 
 
 def lanes_of(x: float) -> Lanes:
@@ -63,12 +68,12 @@ def maximum(a: Lanes, b: Lanes | float) -> Lanes:
     return np.maximum(a, b)
 
 
-def copysign(a: Lanes, b: Lanes) -> Lanes:
+def copysign(a: Lanes | float, b: Lanes) -> Lanes:
     """Sizes of the first with the signs of the second."""
     return np.copysign(a, b)
 
 
-def where(chosen: Mask, a: Lanes, b: Lanes) -> Lanes:
+def where(chosen: Mask, a: Lanes | float, b: Lanes | float) -> Lanes:
     """Numbers of the first where chosen, of the second elsewhere."""
     return np.where(chosen, a, b)
 
@@ -93,9 +98,9 @@ def all_of(chosen: Mask) -> bool:
     return bool(chosen.all())
 
 
-def complex_of(real: Lanes, imag: Lanes) -> ComplexLanes:
+def complex_of(real: Lanes, imag: Lanes | float) -> ComplexLanes:
     """Complex numbers of their parts."""
-    return real + 1j * imag
+    return np.asarray(real + 1j * np.asarray(imag), np.complex128)
 
 
 def real_of(x: ComplexLanes) -> Lanes:

@@ -4,7 +4,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, PARENT, Hits, Tree
 from raytrace.kernels.compiling import jit
@@ -23,13 +22,11 @@ from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
     Mask,
-    absolute,
     any_of,
     lanes_of,
     load,
     maximum,
     minimum,
-    none_chosen,
     sqrt,
     store,
     where,
@@ -434,7 +431,9 @@ def rim_gain(
     wave = Wave(upright, level, ray_out.sin_el, none)
     wave = carry(view, radio, work.room.leg, n_out, length_out, ray_out, none + rim.z, wave)
     total = path.before + path.after
-    size = (radio.wavelength / (4.0 * math.pi)) / (sqrt(path.before * path.after * total) * sin_beta)
+    size = (radio.wavelength / (4.0 * math.pi)) / (
+        sqrt(path.before * path.after * total) * sin_beta
+    )
     turned = phasor(radio.cis, total * (1.0 / radio.wavelength))
     gain = received(radio, wave, arriving) * (turned * size)
     return share, gain * common_factor(2.0, radio.wavelength), arriving

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from raytrace.kernels.beams import Hits, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import EDGE_OF_STOREY
-from raytrace.kernels.level_edges import Rim, RimLegsIn, new_work, unfold_over_rim
 from raytrace.kernels.lanes import lane, lanes_of
+from raytrace.kernels.level_edges import Rim, RimLegsIn, new_work, unfold_over_rim
 from raytrace.kernels.plan_view import Floats, PlanView, folded, material_at
 from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import Record, Trace

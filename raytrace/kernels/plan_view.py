@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.lanes import Number
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -70,7 +71,7 @@ class PlanView(NamedTuple):
 
 
 @jit(inline=True)
-def cross(ax: float, ay: float, bx: float, by: float) -> float:
+def cross(ax: Number, ay: Number, bx: Number, by: Number) -> Number:
     """Third component of a x b; positive where b lies to the left of a."""
     return ax * by - ay * bx
 

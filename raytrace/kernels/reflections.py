@@ -63,9 +63,7 @@ def sum_reflections(
         bundle = no_paths()
         for k in range(n_images):
             slope = (load(room.image_z[k]) - z_source) * per_length
-            share = share_here * fitting(
-                trace.plan, leg, n, z_root, slope, height, trace.max_walls
-            )
+            share = share_here * fitting(trace.plan, leg, n, z_root, slope, height, trace.max_walls)
             if not any_of(share > 0.0):
                 continue
             ray = new_ray(trace.radio, slope, trace.image_bounces[k])

@@ -30,6 +30,18 @@ from raytrace.kernels.beams import (
     resized,
 )
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.lanes import (
+    WIDTH,
+    Lanes,
+    Number,
+    any_of,
+    lanes_of,
+    load,
+    maximum,
+    minimum,
+    store,
+    where,
+)
 from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView
 
 STEEPEST = 1e5
@@ -75,7 +87,7 @@ def edge_frame(view: PlanView, e: int) -> Floats:
 
 
 @jit(inline=True)
-def in_frame(frame: Floats, x: float, y: float) -> tuple[float, float]:
+def in_frame(frame: Floats, x: Number, y: Number) -> tuple[Number, Number]:
     """(x, h) of a point."""
     return (
         frame[0] * x + frame[1] * y + frame[2],
@@ -84,7 +96,7 @@ def in_frame(frame: Floats, x: float, y: float) -> tuple[float, float]:
 
 
 @jit(inline=True)
-def from_frame(frame: Floats, u: float) -> tuple[float, float]:
+def from_frame(frame: Floats, u: Number) -> tuple[Number, Number]:
     """Point (x, y) of the plan view that is u along the edge; the frame is orthonormal."""
     return (
         frame[0] * (u - frame[2]) - frame[3] * frame[5],
@@ -311,8 +323,17 @@ def grow_strips(
 
 
 @jit()
-def hit_from_strip(tree: StripTree, targets: Targets) -> tuple[Hits, Floats]:
+def hit_from_strip(
+    tree: StripTree, targets: Targets, first: int, most: int
+) -> tuple[Hits, Floats, int]:
     """Points that beams from a segment light.
+
+    Parameters
+    ----------
+    tree, targets
+        The beams and the points.
+    first, most
+        Beam to begin with, and how many hits are enough: the last beam is done with, though.
 
     Returns
     -------
@@ -321,39 +342,48 @@ def hit_from_strip(tree: StripTree, targets: Targets) -> tuple[Hits, Floats]:
     seen
         (n, 4) the point as (x, h) in the edge's frame, and the stretch of the edge that sees it
         [m].
+    following
+        The beam to go on with.
     """
     pair, share = np.empty((1024, 2), np.int32), np.empty((1024, 1))
-    seen = np.empty((1024, 4))
-    n = 0
-    for i in range(len(tree.link)):
-        cell = tree.link[i, CELL]
-        for k in range(targets.cell_points[cell], targets.cell_points[cell + 1]):
-            point = targets.number[k]
-            x, h = in_frame(tree.frame[i], targets.xy[point, 0], targets.xy[point, 1])
-            if h <= TIE_M:
+    seen, rows = np.empty((1024, 4)), np.empty((4, WIDTH))
+    n, i = 0, first
+    while i < len(tree.link) and n < most:
+        cell, rays = tree.link[i, CELL], tree.rays[tree.first[i] : tree.first[i + 1]]
+        last = targets.cell_points[cell + 1]
+        for k in range(targets.cell_points[cell], last, WIDTH):
+            x, h = in_frame(tree.frame[i], load(targets.x[k:]), load(targets.y[k:]))
+            low, high = stretch_through(rays, x, h)
+            lit = (high - low > SLIVER_M) & (h > TIE_M)
+            if not any_of(lit):
                 continue
-            low, high = stretch_through(tree.rays[tree.first[i] : tree.first[i + 1]], x, h)
-            if high - low <= SLIVER_M:
-                continue
-            if n == len(pair):
+            for row, column in enumerate((x, h, where(lit, low, 0.0), where(lit, high, 0.0))):
+                store(rows[row], column)
+            if n + WIDTH > len(pair):
                 pair, share, seen = enlarged(pair), enlarged(share), enlarged(seen)
-            pair[n, 0], pair[n, 1], share[n, 0] = point, i, targets.share[k]
-            seen[n, 0], seen[n, 1], seen[n, 2], seen[n, 3] = x, h, low, high
-            n += 1
-    return Hits(resized(pair, n), resized(share, n)[:, 0]), resized(seen, n)
+            for at in range(k, min(k + WIDTH, last)):
+                if rows[2, at - k] == rows[3, at - k]:
+                    continue
+                pair[n, 0], pair[n, 1], share[n, 0] = targets.number[at], i, targets.share[at]
+                for column in range(4):
+                    seen[n, column] = rows[column, at - k]
+                n += 1
+        i += 1
+    return Hits(resized(pair, n), resized(share, n)[:, 0]), resized(seen, n), i
 
 
-@jit(inner=True)
-def stretch_through(rays: Floats, x: float, h: float) -> tuple[float, float]:
-    """Smallest and largest u of the rays of a polygon through (x, h); empty if low > high."""
-    low, high = 1e300, -1e300
-    n = len(rays)
-    before = rays[n - 1, 0] + rays[n - 1, 1] * h - x
-    for j in range(n):
-        here = rays[j, 0] + rays[j, 1] * h - x
-        if (here >= 0.0) != (before >= 0.0):
-            t = before / (before - here)
-            u = rays[j - 1, 0] + t * (rays[j, 0] - rays[j - 1, 0])
-            low, high = min(low, u), max(high, u)
+@jit(inline=True)
+def stretch_through(rays: Floats, x: Lanes, h: Lanes) -> tuple[Lanes, Lanes]:
+    """Smallest and largest u of the rays of a polygon through points; empty if low > high."""
+    low, high = lanes_of(1e300), lanes_of(-1e300)
+    last = len(rays) - 1
+    before = h * rays[last, 1] + rays[last, 0] - x
+    for j in range(last + 1):
+        here = h * rays[j, 1] + rays[j, 0] - x
+        left, right = (here >= 0.0) & (before < 0.0), (here < 0.0) & (before >= 0.0)
+        t = before / (before - here)
+        u = rays[j - 1, 0] + t * (rays[j, 0] - rays[j - 1, 0])
+        low = where(left | right, minimum(low, u), low)
+        high = where(left | right, maximum(high, u), high)
         before = here
     return low, high

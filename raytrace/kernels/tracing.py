@@ -14,6 +14,7 @@ from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
     absolute,
+    any_of,
     floor,
     gather_pairs1,
     imag_of,
@@ -164,8 +165,9 @@ class Room(NamedTuple):
         Legs to eight receivers.
     receivers
         (8,) which ones.
-    image_z
-        (2 max_order + 1, 8) images of their heights in floor and ceiling [m].
+    levels, image_z
+        (8,), (2 max_order + 1, 8) which of the receiver heights they are at, and its images in
+        floor and ceiling [m].
     counts
         (max_order + 1, 8) paths to them by reflections.
     rows
@@ -174,6 +176,7 @@ class Room(NamedTuple):
 
     leg: Leg
     receivers: Ints
+    levels: Ints
     image_z: Floats
     counts: Floats
     rows: Floats
@@ -185,6 +188,7 @@ def new_room(max_order: int, n_items: int) -> Room:
     return Room(
         new_leg(n_items),
         np.zeros(WIDTH, np.int64),
+        np.full(WIDTH, -1, np.int64),
         np.empty((2 * max_order + 1, WIDTH)),
         np.empty((max_order + 1, WIDTH)),
         np.empty((8, WIDTH)),
@@ -230,8 +234,10 @@ def next_block(trace: Trace, hits: Hits, first: int, room: Room) -> Block:
         room.receivers[j] = r
         room.rows[0, j], room.rows[1, j] = trace.receivers[r, 0], trace.receivers[r, 1]
         room.rows[2, j] = hits.share[hit] if j < n else 0.0
-        for k in range(trace.image_z.shape[1]):
-            room.image_z[k, j] = trace.image_z[trace.level[r], k]
+        if room.levels[j] != trace.level[r]:
+            room.levels[j] = trace.level[r]
+            for k in range(trace.image_z.shape[1]):
+                room.image_z[k, j] = trace.image_z[trace.level[r], k]
     for k in range(len(room.counts)):
         store(room.counts[k], lanes_of(0.0))
     x, y = load(room.rows[0]), load(room.rows[1])
@@ -310,6 +316,11 @@ def counted(room: Room, order: int, share: Lanes) -> None:
 @jit(inline=True)
 def add_bundle(sums: Sums, block: Block, bundle: Bundle, room: Room) -> None:
     """Add what arrives at the receivers of a block to the sums."""
+    total = lanes_of(0.0)
+    for k in range(len(room.counts)):
+        total = total + load(room.counts[k])
+    if not any_of(total > 0.0):
+        return
     rows = room.rows
     for k, part in enumerate(bundle):
         store(rows[k], part)
@@ -382,7 +393,12 @@ def free_space(trace: Trace, length: Lanes) -> Lanes:
 
 @jit(inner=True)
 def recorded(
-    record: Record, block: tuple[int, int], leg: int, images: tuple[int, int], gain: ComplexLanes, share: Lanes
+    record: Record,
+    block: tuple[int, int],
+    leg: int,
+    images: tuple[int, int],
+    gain: ComplexLanes,
+    share: Lanes,
 ) -> None:
     """Write paths down if there is room: those of a block's first hit, and so many."""
     for j in range(block[1]):

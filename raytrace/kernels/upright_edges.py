@@ -297,9 +297,7 @@ def pair_gain(
     ray = new_ray(radio, slope, bounces)
     root = sqrt(ray.cos_el)
     wave = sent(radio, pair.departure, ray)
-    wave = carried(
-        plan, radio, pair.leg_in, pair.n_in, lanes_of(pair.length_in), ray, z_root, wave
-    )
+    wave = carried(plan, radio, pair.leg_in, pair.n_in, lanes_of(pair.length_in), ray, z_root, wave)
     through = lanes_of(0.0)
     if trace.max_walls > 0:
         through = shining(trace, edge, pair, slope)
@@ -322,7 +320,12 @@ def pair_gain(
 
 @jit(inner=True, fast=True)
 def wedge_bound(
-    trace: Trace, is_sheet: bool, cosines: tuple[Lanes, Lanes], spread: Lanes, total: Lanes, order: int
+    trace: Trace,
+    is_sheet: bool,
+    cosines: tuple[Lanes, Lanes],
+    spread: Lanes,
+    total: Lanes,
+    order: int,
 ) -> Lanes:
     """Bounds on diffracted powers, the walls on the way not counted.
 

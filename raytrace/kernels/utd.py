@@ -369,7 +369,10 @@ def let_past(
     difference = mix * (1.0 - cosine * cosine)
     straight, slant = 1.0 - terms.o_cosine * terms.o_cosine, beta[1] * terms.o_turn
     per_size = 1.0 / (straight * straight + slant * slant + 1e-30)
-    turned, mixed = difference * (slant * slant * per_size), difference * (straight * slant * per_size)
+    turned, mixed = (
+        difference * (slant * slant * per_size),
+        difference * (straight * slant * per_size),
+    )
     through_along = (tm + difference - turned) * along + mixed * across
     through_across = (tm + turned) * across + mixed * along
     return through_along, through_across

@@ -17,6 +17,9 @@ from numba.extending import models, register_model
 from raytrace.kernels import lanes
 from raytrace.kernels.lanes import WIDTH
 
+Value = Any
+"""A value of LLVM's intermediate language, whose type hints are incomplete."""
+
 _DOUBLE = ir.DoubleType()
 _DOUBLES = ir.VectorType(_DOUBLE, WIDTH)
 _BITS = ir.VectorType(ir.IntType(1), WIDTH)
@@ -64,7 +67,7 @@ Lower = Callable[[ir.IRBuilder, Sequence[Any]], Any]
 as pairs of them."""
 
 
-def _spread(builder: ir.IRBuilder, number: ir.Value) -> ir.Value:
+def _spread(builder: ir.IRBuilder, number: Value) -> Value:
     """Eight times a number."""
     one = builder.insert_element(ir.Constant(_DOUBLES, ir.Undefined), number, _index(0))
     zeros = ir.Constant(_INTS, [0] * WIDTH)
@@ -75,7 +78,7 @@ def _index(k: int) -> ir.Constant:
     return ir.Constant(ir.IntType(32), k)
 
 
-def _operand(context: Any, builder: ir.IRBuilder, kind: types.Type, value: ir.Value) -> Any:
+def _operand(context: Any, builder: ir.IRBuilder, kind: types.Type, value: Value) -> Any:
     """Value of a numba type as vectors, where it is a number."""
     if kind == FLOAT:
         return _spread(builder, value)
@@ -92,26 +95,33 @@ def _teach(
     """Decorate what compiles a function, of arguments of these types, to instructions."""
 
     def decorate(write: Lower) -> Lower:
-        def lower(context: Any, builder: ir.IRBuilder, sig: Any, args: Sequence[ir.Value]) -> Any:
+        def lower(context: Any, builder: ir.IRBuilder, sig: Any, args: Sequence[Value]) -> Any:
             operands = [
                 _operand(context, builder, k, v) for k, v in zip(sig.args, args, strict=True)
             ]
             return _returned(context, builder, result, write(builder, operands))
 
-        for case in cases:
-            lower_builtin(function, *case)(lower)
-        template = type(
-            f"{function.__name__}_of_lanes",
-            (ConcreteTemplate,),
-            {"key": function, "cases": [signature(result, *case) for case in cases]},
-        )
-        infer_global(function)(template)
+        _register(function, result, cases, lower)
         return write
 
     return decorate
 
 
-def _returned(context: Any, builder: ir.IRBuilder, result: types.Type, value: Any) -> ir.Value:
+def _register(
+    function: Callable[..., Any],
+    result: types.Type,
+    cases: Sequence[tuple[types.Type, ...]],
+    lower: Callable[..., Value],
+) -> None:
+    """Tell numba the types of a function, and how it is compiled."""
+    for case in cases:
+        lower_builtin(function, *case)(lower)
+    attributes = {"key": function, "cases": [signature(result, *case) for case in cases]}
+    tell: Any = infer_global(function)
+    tell(type(f"{function.__name__}_of_lanes", (ConcreteTemplate,), attributes))
+
+
+def _returned(context: Any, builder: ir.IRBuilder, result: types.Type, value: Any) -> Value:
     """Value that numba expects of a function."""
     if result == COMPLEX:
         made = cgutils.create_struct_proxy(COMPLEX)(context, builder)
@@ -148,9 +158,11 @@ def _teach_operators() -> None:
         _teach(op, COMPLEX, *((two, one) for one, two in _MIXED_PAIRS))(
             lambda b, x: [b.fmul(x[0], part) for part in x[1]]
         )
-    for sign, op in {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge,
-                     "==": operator.eq, "!=": operator.ne}.items():  # fmt: skip
-        _teach(op, MASK, *_REAL_PAIRS)(lambda b, x, s=sign: b.fcmp_ordered(s, x[0], x[1]))
+    for name, sign in {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "=="}.items():
+        _teach(getattr(operator, name), MASK, *_REAL_PAIRS)(
+            lambda b, x, s=sign: b.fcmp_ordered(s, x[0], x[1])
+        )
+    _teach(operator.ne, MASK, *_REAL_PAIRS)(lambda b, x: b.fcmp_unordered("!=", x[0], x[1]))
     for op, write in ((operator.and_, "and_"), (operator.or_, "or_")):
         _teach(op, MASK, (MASK, MASK))(lambda b, x, w=write: getattr(b, w)(x[0], x[1]))
     _teach(operator.invert, MASK, (MASK,))(lambda b, x: b.not_(x[0]))
@@ -158,7 +170,7 @@ def _teach_operators() -> None:
     _teach(operator.neg, COMPLEX, (COMPLEX,))(lambda b, x: [b.fneg(part) for part in x[0]])
 
 
-def _product(builder: ir.IRBuilder, x: Sequence[Any]) -> list[ir.Value]:
+def _product(builder: ir.IRBuilder, x: Sequence[Any]) -> list[Value]:
     (a, b), (c, d) = x
     m, add, subtract = builder.fmul, builder.fadd, builder.fsub
     return [subtract(m(a, c), m(b, d)), add(m(a, d), m(b, c))]
@@ -181,11 +193,9 @@ _teach(lanes.where_complex, COMPLEX, *((MASK, *pair) for pair in _COMPLEX_PAIRS)
 def _intrinsic(function: Callable[..., Any], name: str, *cases: tuple[types.Type, ...]) -> None:
     """Compile a function to LLVM's intrinsic of that name."""
 
-    def write(builder: ir.IRBuilder, x: Sequence[Any]) -> ir.Value:
+    def write(builder: ir.IRBuilder, x: Sequence[Any]) -> Value:
         kind = ir.FunctionType(_DOUBLES, [_DOUBLES] * len(x))
-        called = cgutils.get_or_insert_function(
-            builder.module, kind, f"llvm.{name}.v{WIDTH}f64"
-        )
+        called = cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{WIDTH}f64")
         return builder.call(called, x)
 
     _teach(function, LANES, *cases)(write)
@@ -206,17 +216,17 @@ _teach(lanes.maximum, LANES, *_REAL_PAIRS)(
 _teach(lanes.none_chosen, MASK, ())(lambda b, x: ir.Constant(_BITS, [0] * WIDTH))
 
 
-def _as_byte(builder: ir.IRBuilder, mask: ir.Value) -> ir.Value:
+def _as_byte(builder: ir.IRBuilder, mask: Value) -> Value:
     return builder.bitcast(mask, ir.IntType(WIDTH))
 
 
 @_teach(lanes.any_of, types.boolean, (MASK,))
-def _any(builder: ir.IRBuilder, x: Sequence[Any]) -> ir.Value:
+def _any(builder: ir.IRBuilder, x: Sequence[Any]) -> Value:
     return builder.icmp_unsigned("!=", _as_byte(builder, x[0]), ir.Constant(ir.IntType(WIDTH), 0))
 
 
 @_teach(lanes.all_of, types.boolean, (MASK,))
-def _all(builder: ir.IRBuilder, x: Sequence[Any]) -> ir.Value:
+def _all(builder: ir.IRBuilder, x: Sequence[Any]) -> Value:
     return builder.icmp_unsigned("==", _as_byte(builder, x[0]), ir.Constant(ir.IntType(WIDTH), -1))
 
 
@@ -224,41 +234,34 @@ def _teach_memory(
     function: Callable[..., Any],
     result: types.Type,
     dimensions: int,
-    write: Callable[[ir.IRBuilder, ir.Value, Sequence[ir.Value]], Any],
+    write: Callable[[ir.IRBuilder, Value, Sequence[Value]], Any],
 ) -> None:
     """Teach numba a function whose first argument is an array; it is given as a pointer."""
     with_lanes = (LANES,) if function is not lanes.load else ()
     cases = [(types.Array(FLOAT, dimensions, "C", readonly=r), *with_lanes) for r in (False, True)]
 
-    def lower(context: Any, builder: ir.IRBuilder, sig: Any, args: Sequence[ir.Value]) -> Any:
+    def lower(context: Any, builder: ir.IRBuilder, sig: Any, args: Sequence[Value]) -> Any:
         array = context.make_array(sig.args[0])(context, builder, value=args[0])
         return _returned(context, builder, result, write(builder, array.data, args[1:]))
 
-    for case in cases:
-        lower_builtin(function, *case)(lower)
-    template = type(
-        f"{function.__name__}_of_lanes",
-        (ConcreteTemplate,),
-        {"key": function, "cases": [signature(result, *case) for case in cases]},
-    )
-    infer_global(function)(template)
+    _register(function, result, cases, lower)
 
 
-def _load(builder: ir.IRBuilder, data: ir.Value, args: Sequence[ir.Value]) -> ir.Value:
+def _load(builder: ir.IRBuilder, data: Value, args: Sequence[Value]) -> Value:
     return builder.load(builder.bitcast(data, _DOUBLES.as_pointer()), align=8)
 
 
-def _store(builder: ir.IRBuilder, data: ir.Value, args: Sequence[ir.Value]) -> None:
+def _store(builder: ir.IRBuilder, data: Value, args: Sequence[Value]) -> None:
     builder.store(args[0], builder.bitcast(data, _DOUBLES.as_pointer()), align=8)
 
 
-def _gather(columns: int, stride: int) -> Callable[..., list[ir.Value]]:
+def _gather(columns: int, stride: int) -> Callable[..., list[Value]]:
     """Write the loads of so many numbers from each of eight rows, and their transposition."""
 
-    def write(builder: ir.IRBuilder, data: ir.Value, args: Sequence[ir.Value]) -> list[ir.Value]:
+    def write(builder: ir.IRBuilder, data: Value, args: Sequence[Value]) -> list[Value]:
         row = ir.VectorType(_DOUBLE, columns)
         rows = builder.fptosi(args[0], _INTS)
-        loaded: list[ir.Value] = []
+        loaded: list[Value] = []
         for k in range(WIDTH):
             at = builder.sext(builder.extract_element(rows, _index(k)), ir.IntType(64))
             at = builder.mul(at, ir.Constant(ir.IntType(64), stride))
@@ -269,7 +272,7 @@ def _gather(columns: int, stride: int) -> Callable[..., list[ir.Value]]:
     return write
 
 
-def _transposed(builder: ir.IRBuilder, rows: Sequence[ir.Value]) -> list[ir.Value]:
+def _transposed(builder: ir.IRBuilder, rows: Sequence[Value]) -> list[Value]:
     """Vectors of the first, second, ... numbers of eight rows of 2, 4 or 8."""
     if rows[0].type.count == 2:
         even, odd = (_joined(builder, [rows[k] for k in (s, s + 2, s + 4, s + 6)]) for s in (0, 1))
@@ -292,20 +295,23 @@ def _transposed(builder: ir.IRBuilder, rows: Sequence[ir.Value]) -> list[ir.Valu
     return result
 
 
-def _shuffled(builder: ir.IRBuilder, a: ir.Value, b: ir.Value, take: Sequence[int]) -> ir.Value:
+def _shuffled(builder: ir.IRBuilder, a: Value, b: Value, take: Sequence[int]) -> Value:
     mask = ir.Constant(ir.VectorType(ir.IntType(32), len(take)), list(take))
     return builder.shuffle_vector(a, b, mask)
 
 
-def _joined(builder: ir.IRBuilder, parts: Sequence[ir.Value]) -> ir.Value:
+def _joined(builder: ir.IRBuilder, parts: Sequence[Value]) -> Value:
     """Short vectors one behind the other."""
     while len(parts) > 1:
         n = parts[0].type.count
-        parts = [_shuffled(builder, a, b, range(2 * n)) for a, b in zip(parts[::2], parts[1::2])]
+        parts = [
+            _shuffled(builder, a, b, range(2 * n))
+            for a, b in zip(parts[::2], parts[1::2], strict=True)
+        ]
     return parts[0]
 
 
-def _unpacked(builder: ir.IRBuilder, a: ir.Value, b: ir.Value) -> list[ir.Value]:
+def _unpacked(builder: ir.IRBuilder, a: Value, b: Value) -> list[Value]:
     """Numbers of two vectors in turn: the even ones, and the odd ones."""
     return [
         _shuffled(builder, a, b, [x for k in range(odd, 8, 2) for x in (k, k + 8)])
@@ -313,7 +319,7 @@ def _unpacked(builder: ir.IRBuilder, a: ir.Value, b: ir.Value) -> list[ir.Value]
     ]
 
 
-def _quartered(builder: ir.IRBuilder, a: ir.Value, b: ir.Value) -> list[ir.Value]:
+def _quartered(builder: ir.IRBuilder, a: Value, b: Value) -> list[Value]:
     """First and third pairs of two vectors, and the second and fourth ones."""
     return [
         _shuffled(builder, a, b, [o + k for o in (0, 4, 8, 12) for k in (2 * s, 2 * s + 1)])
