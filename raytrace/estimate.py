@@ -1,48 +1,54 @@
 """What a map will cost, told before it is traced.
 
-The map is traced for some of its receivers and some of the building's edges, to the full order.
-Receivers are taken on a lattice that is refined until enough of them are lit; edges are taken all
-near the transmitter, where most paths go over them, and every k-th one further away. Which ones
-does not depend on chance or on the clock, so the paths that are foretold do not either.
+Some of the families of paths are traced to the full order, for some of the receivers: the most
+lit edges, where most paths go over, and every k-th of the others; of large trees the first beams
+and every k-th run of the others; receivers in tiles, as a beam that lights one lights its
+neighbours too, which are then done at once. Which ones does not depend on chance or on the clock,
+so the paths that are foretold do not either.
 """
 
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from raytrace.edges import LevelEdge, UprightEdge
+from raytrace.families import Family, all_families
 from raytrace.grid import Grid, TraceConfig
-from raytrace.radio_map import RadioMap
+from raytrace.kernels.tracing import Sums, new_sums
+from raytrace.preparing import prepare
 from raytrace.scene import Scene
-from raytrace.summing import default_threads
-from raytrace.trace import compute_radio_map
+from raytrace.summing import AHEAD, add_sums, default_threads
 from raytrace.transmitter import Transmitter
 
-NEAREST_EDGES = 48
-"""Edges nearest to the transmitter are all traced, of each kind this many."""
+Floats = NDArray[np.float64]
 
-FURTHER_EDGES = 48
+MOST_LIT = 16
+"""So many of the most lit families are all traced."""
+
+OTHERS = 24
 """Of the others about as many."""
 
+BEAMS = 2048
+"""Of a larger tree the first beams are looked at, which light most, and about as many others."""
+
+RUN = 32
+"""Beams of a run: neighbours in a tree, of about as many reflections."""
+
+TILE = 4
+"""Cells along the side of a tile."""
+
+RECEIVERS = 8192
+"""Receivers in tiles, about."""
+
+GOLDEN = 0.618
+"""By so much of their distance tiles are shifted from row to row."""
+
 LIT_RECEIVERS = 64
-"""The lattice of receivers is refined until so many of them are lit."""
+"""More tiles are taken until so many of their receivers are lit."""
 
-FIRST_RECEIVERS = 100
-"""Receivers of the coarsest lattice, about."""
-
-TELLING_PATHS = 50_000
-"""It is also refined for so many paths, which take long enough to tell the time of one."""
-
-SECONDS_A_PATH = 1.5e-7
-"""Where a whole map has fewer, a path takes about this long on one thread [s]."""
-
-BYTES_A_HIT = 8
-"""Memory of a receiver in a beam."""
-
-Edge = TypeVar("Edge", UprightEdge, LevelEdge)
+BYTES_A_BEAM = 320
+"""Memory of a beam while its tree grows, about."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +62,7 @@ class CostEstimate:
     seconds
         Time to trace it on this machine, with compiled kernels [s].
     memory_bytes
-        Memory for sums and for receivers in beams, over what the process uses already.
+        Memory for sums and for beams, over what the process uses already.
     """
 
     paths: int
@@ -64,25 +70,28 @@ class CostEstimate:
     memory_bytes: int
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class _Sample:
-    """Some of a map's receivers and edges; one of `edge_step` further edges is in it."""
+    """What some families took and found for some receivers, scaled to all families.
 
-    grid: Grid
-    near: Scene
-    near_and_far: Scene
-    edge_step: int
-    source: Transmitter
-    config: TraceConfig
-    threads: int | None
+    Attributes
+    ----------
+    n_families, lit
+        Number of all families, and of receivers with a path.
+    paths
+        Number of paths.
+    growing_s, summing_s
+        Time for the beams, and for finding receivers in them and summing the paths [s].
+    most_beams
+        Beams of the largest tree.
+    """
 
-    def trace(self, scene: Scene, grid: Grid | None = None) -> tuple[RadioMap, float]:
-        """Return a map of some edges, and how long it took [s]."""
-        started = time.perf_counter()
-        radio_map = compute_radio_map(
-            scene, self.source, grid or self.grid, self.config, threads=self.threads
-        )
-        return radio_map, time.perf_counter() - started
+    n_families: int
+    lit: int
+    paths: float
+    growing_s: float
+    summing_s: float
+    most_beams: int
 
 
 def estimate_cost(
@@ -107,81 +116,79 @@ def estimate_cost(
     SceneError
         Where the transmitter is not inside the building.
     """
-    config = config or TraceConfig()
-    sample = _sample_of(scene, source, grid, config, threads)
-    step = _coarsest_step(grid)
+    config, threads = config or TraceConfig(), threads or default_threads()
+    n_receivers = grid.x.size * grid.y.size
+    every = max(1, n_receivers // RECEIVERS)
+    # once for the compiler, which is not to be timed
+    _sampled(scene, source, grid.points()[:1], replace(config, max_reflections=1))
     while True:
-        sample = replace(sample, grid=_lattice(grid, step))
-        near, _ = sample.trace(sample.near)
-        enough = near.path_count.sum() >= TELLING_PATHS
-        if step == 1 or (enough and np.count_nonzero(near.path_count) >= LIT_RECEIVERS):
+        points = _in_tiles(grid, every)
+        sample = _sampled(scene, source, points, config)
+        if every == 1 or sample.lit >= LIT_RECEIVERS:
             break
-        step = max(1, step // 2)
-    everywhere = grid.x.size * grid.y.size / near.path_count.size
-    traced, seconds = sample.trace(sample.near_and_far)
-    near_paths, traced_paths = int(near.path_count.sum()), int(traced.path_count.sum())
-    paths = everywhere * (near_paths + sample.edge_step * (traced_paths - near_paths))
+        every //= 2
+    everywhere = n_receivers / len(points)
+    started = time.perf_counter()
+    prepare(scene, source, grid.points(), replace(config, max_reflections=0))
+    preparing = time.perf_counter() - started
+    working = (sample.growing_s + everywhere * sample.summing_s) / threads
+    a_sum = new_sums(n_receivers, config.max_reflections)
+    in_work = min(sample.n_families, AHEAD * threads + 1) + 1
     return CostEstimate(
-        round(paths),
-        _seconds(sample, grid, paths, (traced_paths, seconds)),
-        _bytes(grid, config, paths, threads),
+        round(sample.paths * everywhere),
+        preparing + working + sample.n_families * _seconds_to_add(a_sum),
+        in_work * sum(part.nbytes for part in a_sum) + threads * BYTES_A_BEAM * sample.most_beams,
     )
 
 
-def _sample_of(
-    scene: Scene, source: Transmitter, grid: Grid, config: TraceConfig, threads: int | None
-) -> _Sample:
-    x, y, _ = source.position
-    n_edges = max(len(scene.upright_edges), len(scene.level_edges))
-    step = max(1, round((n_edges - NEAREST_EDGES) / FURTHER_EDGES))
-    upright = sorted(scene.upright_edges, key=lambda e: (e.x - x) ** 2 + (e.y - y) ** 2)
-    middles = scene.view.ends.reshape(-1, 2, 2).mean(axis=1)
-    away = np.hypot(*(middles - (x, y)).T)
-    level = sorted(scene.level_edges, key=lambda e: float(away[e.plan_edges[0]]))
-    near, both = (
-        replace(scene, upright_edges=_some(upright, k), level_edges=_some(level, k))
-        for k in (0, step)
-    )
-    return _Sample(grid, near, both, step, source, config, threads)
+def _in_tiles(grid: Grid, every: int) -> Floats:
+    """Return the cells (n, 3) [m] of one in so many tiles, some in each row and column of tiles."""
+    x, y = np.arange(grid.x.size) // TILE, np.arange(grid.y.size) // TILE
+    turn = x[None, :] + max(1, round(GOLDEN * every)) * y[:, None]
+    return grid.points()[(turn % every == 0).ravel()]
 
 
-def _some(edges: Sequence[Edge], step: int) -> tuple[Edge, ...]:
-    """Return the nearest edges, and every step-th further one; none of those for step 0."""
-    further = edges[NEAREST_EDGES:]
-    return (*edges[:NEAREST_EDGES], *(further[step // 2 :: step] if step else ()))
+def _sampled(scene: Scene, source: Transmitter, points: Floats, config: TraceConfig) -> _Sample:
+    """Trace some of the families for some receivers."""
+    started = time.perf_counter()
+    tracing = prepare(scene, source, points, config)
+    families = all_families(tracing)
+    growing, total = time.perf_counter() - started, new_sums(len(points), 0)
+    summing = paths = 0.0
+    most_beams = len(tracing.tree.link)
+    for family, weight in _some(families):
+        started = time.perf_counter()
+        n_beams = family.grow()
+        growing += weight * (time.perf_counter() - started)
+        most_beams = max(most_beams, n_beams)
+        for beams, each in _some_beams(n_beams):
+            sums = new_sums(len(total.power), config.max_reflections)
+            started = time.perf_counter()
+            family.add_to(sums, beams)
+            summing += weight * each * (time.perf_counter() - started)
+            paths += weight * each * float(sums.n_paths.sum())
+            total.power[:] += sums.power
+    lit = int(np.count_nonzero(total.power))
+    return _Sample(len(families), lit, paths, growing, summing, most_beams)
 
 
-def _coarsest_step(grid: Grid) -> int:
-    """Return the largest power of two that leaves enough receivers."""
-    step = 1
-    while grid.x.size * grid.y.size >= 4 * step**2 * FIRST_RECEIVERS:
-        step *= 2
-    return step
+def _some(families: list[Family]) -> list[tuple[Family, int]]:
+    """Return some families, the most lit ones come first, and for how many each of them stands."""
+    others = families[MOST_LIT:]
+    step = max(1, round(len(others) / OTHERS))
+    return [(f, 1) for f in families[:MOST_LIT]] + [(f, step) for f in others[step // 2 :: step]]
 
 
-def _lattice(grid: Grid, step: int) -> Grid:
-    return replace(grid, x=grid.x[step // 2 :: step], y=grid.y[step // 2 :: step])
+def _some_beams(n: int) -> list[tuple[NDArray[np.int64], float]]:
+    """Return the first of n beams, and some of the others with how many each stands for."""
+    first, others = np.arange(min(n, BEAMS)), np.arange(min(n, BEAMS), n)
+    every = max(1, len(others) // BEAMS)
+    some = others[others // RUN % every == every // 2]
+    return [(first, 1.0), (some, len(others) / max(len(some), 1))]
 
 
-def _seconds(sample: _Sample, whole: Grid, paths: float, traced: tuple[int, float]) -> float:
-    """Time for the beams, for adding up all families' sums, and for the paths [s]."""
-    shallow = replace(sample, config=replace(sample.config, max_reflections=0), grid=whole)
-    _, adding = shallow.trace(sample.near_and_far)
-    one = replace(sample.grid, x=sample.grid.x[:1], y=sample.grid.y[:1])
-    _, near = sample.trace(sample.near, one)
-    _, both = sample.trace(sample.near_and_far, one)
-    beams = near + sample.edge_step * max(0.0, both - near)
-    n, seconds = traced
-    a_path = SECONDS_A_PATH / (sample.threads or default_threads())
-    if n >= TELLING_PATHS:
-        a_path = min(max((seconds - both) / n, 0.2 * a_path), 20.0 * a_path)
-    return beams + sample.edge_step * adding + paths * a_path
-
-
-def _bytes(grid: Grid, config: TraceConfig, paths: float, threads: int | None) -> int:
-    """Memory for the sums of all families in work, and for receivers in beams."""
-    receivers = grid.x.size * grid.y.size
-    a_sum = 24 + 8 * (config.max_reflections + 1)
-    in_work = 9 * (threads or default_threads()) + 1
-    hits = paths / (config.max_reflections + 1)
-    return round(in_work * a_sum * receivers + BYTES_A_HIT * hits)
+def _seconds_to_add(sums: Sums) -> float:
+    """Return the time to add the sums of a family to those of the others [s]."""
+    started = time.perf_counter()
+    add_sums(sums, new_sums(len(sums.power), sums.n_paths.shape[1] - 1))
+    return time.perf_counter() - started

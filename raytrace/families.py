@@ -25,6 +25,7 @@ from raytrace.kernels.utd import new_wedge
 from raytrace.preparing import Tracing
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 HITS_AT_ONCE = 1 << 17
 """Receivers in beams are looked up so many at a time, which bounds the memory of large maps."""
@@ -33,8 +34,12 @@ HITS_AT_ONCE = 1 << 17
 class Family(Protocol):
     """Some of the paths of a trace."""
 
-    def add_to(self, sums: Sums) -> None:
-        """Add the paths to sums."""
+    def grow(self) -> int:
+        """Grow the beams, which `add_to` does else; return how many there are."""
+        ...
+
+    def add_to(self, sums: Sums, beams: Ints | None = None) -> None:
+        """Add the paths to sums, or only those of some of the beams."""
         ...
 
     def write_to(self, sums: Sums, record: Record) -> None:
@@ -61,9 +66,13 @@ class Reflections:
         t = self._tracing
         return all_hits(t, t.tree)
 
-    def add_to(self, sums: Sums) -> None:
+    def grow(self) -> int:
+        """See `Family`; the beams of the source are there."""
+        return len(self._tracing.tree.link)
+
+    def add_to(self, sums: Sums, beams: Ints | None = None) -> None:
         """See `Family`."""
-        for hits in hits_in_lots(self._tracing, self._tracing.tree):
+        for hits in hits_in_lots(self._tracing, self._tracing.tree, beams):
             self._sum(hits, sums, no_record())
 
     def write_to(self, sums: Sums, record: Record) -> None:
@@ -121,10 +130,14 @@ class OverUprightEdge:
     def _hits(self) -> Hits:
         return all_hits(self._tracing, self._tree)
 
-    def add_to(self, sums: Sums) -> None:
+    def grow(self) -> int:
+        """See `Family`."""
+        return len(self._tree.link) if len(self._legs_in.order) else 0
+
+    def add_to(self, sums: Sums, beams: Ints | None = None) -> None:
         """See `Family`."""
         if len(self._legs_in.order):
-            for hits in hits_in_lots(self._tracing, self._tree):
+            for hits in hits_in_lots(self._tracing, self._tree, beams):
                 self._sum(hits, sums, no_record())
 
     def write_to(self, sums: Sums, record: Record) -> None:
@@ -189,14 +202,21 @@ class OverLevelEdge:
 
     @cached_property
     def _lit(self) -> tuple[Hits, Floats]:
-        return hit_from_strip(self._strips, self._tracing.targets, 0, ALL_HITS)[:2]
+        beams = np.arange(len(self._strips.link))
+        return hit_from_strip(self._strips, self._tracing.targets, beams, ALL_HITS)[:2]
 
-    def add_to(self, sums: Sums) -> None:
+    def grow(self) -> int:
         """See `Family`."""
-        following, strips, targets = 0, self._strips, self._tracing.targets
-        while following < len(strips.link):
-            hits, seen, following = hit_from_strip(strips, targets, following, HITS_AT_ONCE)
+        return len(self._strips.link)
+
+    def add_to(self, sums: Sums, beams: Ints | None = None) -> None:
+        """See `Family`."""
+        strips, targets = self._strips, self._tracing.targets
+        beams = np.arange(len(strips.link)) if beams is None else beams
+        while len(beams):
+            hits, seen, done = hit_from_strip(strips, targets, beams, HITS_AT_ONCE)
             self._sum((hits, seen), sums, no_record())
+            beams = beams[done:]
 
     def write_to(self, sums: Sums, record: Record) -> None:
         """See `Family`."""
@@ -226,16 +246,16 @@ ALL_HITS = 1 << 62
 
 def all_hits(tracing: Tracing, tree: Tree) -> Hits:
     """Receivers in the beams of a tree."""
-    return hit_points(tracing.trace.plan, tree, tracing.targets, 0, ALL_HITS)[0]
+    beams = np.arange(len(tree.link))
+    return hit_points(tracing.trace.plan, tree, tracing.targets, beams, ALL_HITS)[0]
 
 
-def hits_in_lots(tracing: Tracing, tree: Tree) -> Iterator[Hits]:
-    """Receivers in the beams of a tree, some at a time."""
-    following = 0
-    while following < len(tree.link):
-        hits, following = hit_points(
-            tracing.trace.plan, tree, tracing.targets, following, HITS_AT_ONCE
-        )
+def hits_in_lots(tracing: Tracing, tree: Tree, beams: Ints | None) -> Iterator[Hits]:
+    """Receivers in the beams of a tree, or in some of them, so many at a time."""
+    beams = np.arange(len(tree.link)) if beams is None else beams
+    while len(beams):
+        hits, done = hit_points(tracing.trace.plan, tree, tracing.targets, beams, HITS_AT_ONCE)
+        beams = beams[done:]
         yield hits
 
 

@@ -20,6 +20,10 @@ Progress = Callable[[int, int], None]
 """Called with the number of finished parts and of all parts."""
 
 
+AHEAD = 4
+"""Families in work, or waiting for their turn to be added, a thread."""
+
+
 def default_threads() -> int:
     """Threads to use where the caller does not say: one a processor that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -66,13 +70,18 @@ def _sum(tracing: Tracing, threads: int, progress: Progress | None) -> Sums:
     n_families = len(families)
     total = new_sums(len(tracing.trace.receivers), tracing.config.max_reflections)
     for done, part in enumerate(_in_order(tracing, families, threads), 1):
-        strongest = np.maximum(total.moments[:, STRONGEST], part.moments[:, STRONGEST])
-        for whole, addend in zip(total, part, strict=True):
-            whole += addend
-        total.moments[:, STRONGEST] = strongest
+        add_sums(total, part)
         if progress is not None:
             progress(done, n_families)
     return total
+
+
+def add_sums(total: Sums, part: Sums) -> None:
+    """Add the sums of some paths to those of others."""
+    strongest = np.maximum(total.moments[:, STRONGEST], part.moments[:, STRONGEST])
+    for whole, addend in zip(total, part, strict=True):
+        whole += addend
+    total.moments[:, STRONGEST] = strongest
 
 
 def _in_order(tracing: Tracing, families: deque[Family], threads: int) -> Iterator[Sums]:
@@ -88,7 +97,7 @@ def _in_order(tracing: Tracing, families: deque[Family], threads: int) -> Iterat
         ahead: deque[Future[Sums]] = deque()
         while families:
             ahead.append(pool.submit(sums_of, families.popleft()))
-            if len(ahead) > 4 * threads:
+            if len(ahead) > AHEAD * threads:
                 yield ahead.popleft().result()
         while ahead:
             yield ahead.popleft().result()

@@ -22,7 +22,7 @@ from raytrace.transmitter import Transmitter
 
 Floats = NDArray[np.float64]
 
-TRACER_VERSION = 2
+TRACER_VERSION = 3
 """Grows whenever the same scene would give another map."""
 
 

@@ -391,7 +391,7 @@ def most_corners(view: PlanView) -> int:
 
 @jit()
 def hit_points(
-    view: PlanView, tree: Tree, targets: Targets, first: int, most: int
+    view: PlanView, tree: Tree, targets: Targets, beams: Ints, most: int
 ) -> tuple[Hits, int]:
     """Lit points with the beams that light them, beam after beam.
 
@@ -399,18 +399,20 @@ def hit_points(
     ----------
     view, tree, targets
         The plan view, the beams and the points.
-    first, most
-        Beam to begin with, and how many hits are enough: the last beam is done with, though.
+    beams, most
+        Which beams, and how many hits are enough: the last beam is done with, though.
 
     Returns
     -------
-    hits, following
-        The hits, and the beam to go on with.
+    hits, done
+        The hits, and how many of the beams are done with.
     """
     pair, share = np.empty((1024, 2), np.int32), np.empty((1024, 1))
     ways, inside = np.empty((2 + most_corners(view), 2)), np.empty(WIDTH)
-    n, i = 0, first
-    while i < len(tree.link) and n < most:
+    n = done = 0
+    while done < len(beams) and n < most:
+        i = int(beams[done])
+        done += 1
         cell, is_root = tree.link[i, CELL], tree.link[i, EDGE] < 0
         last = targets.cell_points[cell + 1]
         for k in range(targets.cell_points[cell], last, WIDTH):
@@ -433,8 +435,7 @@ def hit_points(
                 if lit > 0.0:
                     pair[n, 0], pair[n, 1], share[n, 0] = targets.number[at], i, lit
                     n += 1
-        i += 1
-    return Hits(resized(pair, n), resized(share, n)[:, 0]), i
+    return Hits(resized(pair, n), resized(share, n)[:, 0]), done
 
 
 @jit()

@@ -324,7 +324,7 @@ def grow_strips(
 
 @jit()
 def hit_from_strip(
-    tree: StripTree, targets: Targets, first: int, most: int
+    tree: StripTree, targets: Targets, beams: Ints, most: int
 ) -> tuple[Hits, Floats, int]:
     """Points that beams from a segment light.
 
@@ -332,8 +332,8 @@ def hit_from_strip(
     ----------
     tree, targets
         The beams and the points.
-    first, most
-        Beam to begin with, and how many hits are enough: the last beam is done with, though.
+    beams, most
+        Which beams, and how many hits are enough: the last beam is done with, though.
 
     Returns
     -------
@@ -342,13 +342,15 @@ def hit_from_strip(
     seen
         (n, 4) the point as (x, h) in the edge's frame, and the stretch of the edge that sees it
         [m].
-    following
-        The beam to go on with.
+    done
+        How many of the beams are done with.
     """
     pair, share = np.empty((1024, 2), np.int32), np.empty((1024, 1))
     seen, rows = np.empty((1024, 4)), np.empty((4, WIDTH))
-    n, i = 0, first
-    while i < len(tree.link) and n < most:
+    n = done = 0
+    while done < len(beams) and n < most:
+        i = int(beams[done])
+        done += 1
         cell, rays = tree.link[i, CELL], tree.rays[tree.first[i] : tree.first[i + 1]]
         last = targets.cell_points[cell + 1]
         for k in range(targets.cell_points[cell], last, WIDTH):
@@ -368,8 +370,7 @@ def hit_from_strip(
                 for column in range(4):
                     seen[n, column] = rows[column, at - k]
                 n += 1
-        i += 1
-    return Hits(resized(pair, n), resized(share, n)[:, 0]), resized(seen, n), i
+    return Hits(resized(pair, n), resized(share, n)[:, 0]), resized(seen, n), done
 
 
 @jit(inline=True)
