@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 import floorplans
-from raytrace import Scene, TraceConfig, Transmitter
+from raytrace import HalfWaveDipole, Scene, TraceConfig, Transmitter
 from raytrace.kernels.tracing import Sums
 from raytrace.preparing import prepare
 from raytrace.summing import sum_paths
@@ -30,6 +30,8 @@ class Case(NamedTuple):
     plan: floorplans.FloorPlan
     source: Floats
     receivers: Floats
+    limits: TraceConfig = LIMITS
+    axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
     def moved(self, matrix: Floats, shift: tuple[float, float]) -> Sums:
         """Sums at the receivers, plan, source and receivers moved together."""
@@ -41,7 +43,9 @@ class Case(NamedTuple):
         scene = Scene.from_mesh(mesh, walls.face_material, walls.materials)
         x, y, z = solid @ self.source + [*shift, 0.0]
         receivers = self.receivers @ solid.T + [*shift, 0.0]
-        return sum_paths(prepare(scene, Transmitter((x, y, z)), receivers, LIMITS))
+        antenna = HalfWaveDipole(axis=tuple(solid @ self.axis))
+        source = Transmitter((x, y, z), antenna=antenna)
+        return sum_paths(prepare(scene, source, receivers, self.limits, antenna))
 
 
 def lattice(plan: floorplans.FloorPlan, step: float, z: float) -> Floats:
@@ -62,6 +66,12 @@ def cases() -> dict[str, Case]:
         "flat": Case(flat, np.array(flat.source), lattice(flat, 0.75, 1.0)),
         "flat, at the height of its sills": Case(
             flat, np.array([*flat.source[:2], at_sill]), lattice(flat, 0.75, at_sill)
+        ),
+        "flat, through a wall": Case(
+            flat, np.array(flat.source), lattice(flat, 0.75, 1.0), TraceConfig(2, 1, 1)
+        ),
+        "flat, slanted antennas": Case(
+            flat, np.array(flat.source), lattice(flat, 0.75, 1.0), axis=(0.3, -0.5, 0.8)
         ),
     }
 
