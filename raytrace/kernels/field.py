@@ -34,7 +34,6 @@ from raytrace.kernels.unfolding import (
     DISTANCE,
     KIND,
     NORMAL,
-    NUDGE_M,
     PASS_PARTIAL,
     REFLECT_PARTIAL,
     SKEW,
@@ -237,26 +236,22 @@ def bounced(ray: Ray, storeys: Lanes, wave: Wave) -> Wave:
     return Wave(upright, level, rising, done)
 
 
-@jit(inner=True)
-def solid_at(view: PlanView, profile: int, z: Lanes) -> Lanes:
-    """Materials of a profile at or next to heights where legs are reflected."""
-    material = materials_at(view, profile, z)
-    if any_of(material < 0.0):
-        above = materials_at(view, profile, z + NUDGE_M)
-        beside = where(above >= 0.0, above, materials_at(view, profile, z - NUDGE_M))
-        material = where(material >= 0.0, material, beside)
-    return maximum(material, 0.0)
-
-
 @jit(inner=True, fast=True)
 def let_through(
-    view: PlanView, radio: Radio, leg: Leg, k: int, ray: Ray, z_root: Lanes, wave: Wave
+    view: PlanView,
+    radio: Radio,
+    leg: Leg,
+    k: int,
+    ray: Ray,
+    heights: tuple[Lanes, float],
+    wave: Wave,
 ) -> Wave:
     """Field behind item k of legs, which they pass (docs/theory.md, eqs. 28-30)."""
     slab = lanes_of(float(leg.marks[k, WHAT]))
+    z_root, nudge = heights
     z = z_root + ray.slope * load(leg.items[k, DISTANCE])
     if leg.marks[k, KIND] == PASS_PARTIAL:
-        slab = materials_at(view, leg.marks[k, WHAT], in_building(z, radio.height))
+        slab = materials_at(view, leg.marks[k, WHAT], in_building(z + nudge, radio.height))
     solid = slab >= 0.0
     if not any_of(solid):
         return wave
@@ -282,7 +277,7 @@ def carried(
     n: int,
     length: Lanes,
     ray: Ray,
-    z_root: Lanes,
+    heights: tuple[Lanes, float],
     wave: Wave,
 ) -> Wave:
     """Carry a field along legs.
@@ -293,23 +288,25 @@ def carried(
         Plan view and radio.
     leg, n, length
         The legs, their number of items and their horizontal lengths [m].
-    ray, z_root
-        Their heights; the unfolded ones at their roots [m].
+    ray, heights
+        Their slopes; the unfolded heights at their roots, and by how much they are taken to be
+        higher where it is asked what stands there [m].
     wave
         The field at the root; the one at the end is returned.
     """
-    per_height = 1.0 / radio.height
+    (z_root, nudge), per_height = heights, 1.0 / radio.height
     for k in range(n):
         kind = leg.marks[k, KIND]
         if kind >= PASS_PARTIAL:
             if len(radio.through) > 0:
-                wave = let_through(view, radio, leg, k, ray, z_root, wave)
+                wave = let_through(view, radio, leg, k, ray, heights, wave)
             continue
         z = z_root + ray.slope * load(leg.items[k, DISTANCE])
         wave = bounced(ray, z * per_height, wave)
         slab = lanes_of(float(leg.marks[k, WHAT]))
         if kind == REFLECT_PARTIAL:
-            slab = solid_at(view, leg.marks[k, WHAT], in_building(z, radio.height))
+            z = in_building(z + nudge, radio.height)
+            slab = maximum(materials_at(view, leg.marks[k, WHAT], z), 0.0)
         normal = load(leg.items[k, NORMAL])
         tm, mix = slab_lookup(radio.slabs, radio.slab_rows, slab, absolute(normal) * ray.cos_el)
         a, b = load(leg.items[k, SKEW]), -normal * wave.rising

@@ -35,6 +35,7 @@ from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView
 from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import (
     Block,
+    Bundle,
     Record,
     Room,
     Sums,
@@ -52,13 +53,23 @@ from raytrace.kernels.tracing import (
 from raytrace.kernels.unfolding import (
     NUDGE_M,
     Leg,
-    allowed,
+    fitting,
     most_items,
     new_leg,
+    share_of_look,
     unfold,
     walls_met,
 )
 from raytrace.kernels.utd import Wedge, common_factor, diffracted, face_angles, wedge_terms
+
+RIM_LOOKS = (
+    (0.0, 0.0),
+    (-NUDGE_M, -NUDGE_M),
+    (-NUDGE_M, NUDGE_M),
+    (NUDGE_M, -NUDGE_M),
+    (NUDGE_M, NUDGE_M),
+)
+"""Nudges before and behind the edge, as `unfolding.LOOKS`; a further look counts a quarter."""
 
 
 class Rim(NamedTuple):
@@ -265,13 +276,11 @@ def sum_level_edge(
                         root_of_squares(across_out, u - seen.x), h, seen.h, z_in[a],
                         load(room.image_z[b]), bounces[a], bounces[b], legs_in.beam[p], block.beam,
                     )  # fmt: skip
-                    fits, gain, arriving = rim_gain(trace, rim, path, (tree, strips), block, work)
-                    share = share * fits
-                    counted(room, order + bounces[a] + bounces[b], share)
-                    detour = path.before + path.after - block.straight
-                    bundle = with_path(bundle, gain, detour, share, arriving)
-                    if record.used[0] >= 0:
-                        recorded(record, (block.first, block.n), p, (a, b), gain, share)
+                    images, n_bounces = (p, a, b), order + bounces[a] + bounces[b]
+                    bundle = with_rim_path(
+                        bundle, trace, rim, path, (tree, strips), block, share, work, record,
+                        images, n_bounces,
+                    )  # fmt: skip
         add_bundle(sums, block, bundle, room)
 
 
@@ -316,40 +325,6 @@ def met(
     return walls_met(view, leg, n, z_root, slope, height, nudge)
 
 
-@jit(inner=True)
-def rim_met(
-    trace: Trace,
-    rim: Rim,
-    items: tuple[int, int],
-    slopes: tuple[Lanes, Lanes],
-    nudges: tuple[float, float],
-    work: RimWork,
-) -> tuple[Lanes, Mask]:
-    """How many walls paths go through, and which touch a rim, as for `unfolding.walls_met`."""
-    view, height, z = trace.plan, trace.radio.height, lanes_of(trace.source[2])
-    before, at_rims = met(view, work.leg_in, items[0], z, slopes[0], height, nudges[0])
-    leg, z = work.room.leg, lanes_of(rim.z)
-    behind, also = met(view, leg, items[1], z, slopes[1], height, nudges[1])
-    return before + behind, at_rims | also
-
-
-@jit(inner=True)
-def rim_fitting(
-    trace: Trace, rim: Rim, items: tuple[int, int], slopes: tuple[Lanes, Lanes], work: RimWork
-) -> Lanes:
-    """Shares of paths that the walls allow at their heights (see `unfolding.fitting`)."""
-    through, touching = rim_met(trace, rim, items, slopes, (0.0, 0.0), work)
-    share = where(allowed(through, trace.max_walls), lanes_of(1.0), 0.0)
-    if any_of(touching):
-        beside = lanes_of(0.0)
-        for a in (-NUDGE_M, NUDGE_M):
-            for b in (-NUDGE_M, NUDGE_M):
-                through, _ = rim_met(trace, rim, items, slopes, (a, b), work)
-                beside = beside + where(allowed(through, trace.max_walls), lanes_of(0.25), 0.0)
-        share = where(touching, beside, share)
-    return share
-
-
 @jit(fast=True, inner=True)
 def carry(
     view: PlanView,
@@ -358,36 +333,51 @@ def carry(
     n: int,
     length: Lanes,
     ray: Ray,
-    z_root: Lanes,
+    heights: tuple[Lanes, float],
     wave: Wave,
 ) -> Wave:
     """`field.carried`, compiled apart."""
-    return carried(view, radio, leg, n, length, ray, z_root, wave)
+    return carried(view, radio, leg, n, length, ray, heights, wave)
 
 
-@jit(fast=True, inner=True)
-def rim_gain(
+class RimLegs(NamedTuple):
+    """Both legs of eight paths over a level edge.
+
+    Attributes
+    ----------
+    n_in, n_out
+        Number of their items.
+    length_in, length_out
+        Horizontal lengths [m].
+    departure, leaving
+        Horizontal directions at the source, and from the edge.
+    arriving
+        Horizontal directions that they come from.
+    slope_in, slope_out
+        Growth of the unfolded heights over horizontal distance.
+    """
+
+    n_in: int
+    n_out: int
+    length_in: Lanes
+    length_out: Lanes
+    departure: tuple[Lanes, Lanes]
+    leaving: tuple[Lanes, Lanes]
+    arriving: tuple[Lanes, Lanes]
+    slope_in: Lanes
+    slope_out: Lanes
+
+
+@jit(inner=True)
+def rim_legs(
     trace: Trace,
     rim: Rim,
     path: RimPath,
     trees: tuple[Tree, StripTree],
     block: Block,
     work: RimWork,
-) -> tuple[Lanes, ComplexLanes, tuple[Lanes, Lanes]]:
-    """Shares of paths that the walls allow, their gains, and horizontal directions they come from.
-
-    Parameters
-    ----------
-    trace, rim, path
-        The trace, the edge, and where the paths cross it.
-    trees
-        Beams from the source and from the edge.
-    block
-        The receivers.
-    work
-        Room.
-    """
-    view, radio, frame = trace.plan, trace.radio, rim.frame
+) -> RimLegs:
+    """Unfold both legs of paths; what they meet stands in `work`."""
     beams, receivers = (path.beam_in, path.beam_out), (block.x, block.y)
     legs = unfold_over_rim(trace, rim, path.u, trees, beams, receivers, work)
     (n_in, length_in, wx, wy), (n_out, length_out, ux, uy) = legs
@@ -398,20 +388,103 @@ def rim_gain(
     )
     rise_in = rim.z - path.z_source
     start = -rise_in if path.bounces_in & 1 else rise_in
-    slopes = start / length_in, (path.z_receiver - rim.z) * per_length
-    share = rim_fitting(trace, rim, (n_in, n_out), slopes, work)
-    ray_in = new_ray(radio, slopes[0], path.bounces_in)
-    ray_out = new_ray(radio, slopes[1], path.bounces_out)
-    z_root = lanes_of(trace.source[2])
-    wave = sent(radio, (wx, wy), ray_in)
-    wave = carry(view, radio, work.leg_in, n_in, length_in, ray_in, z_root, wave)
+    slope_out = (path.z_receiver - rim.z) * per_length
+    return RimLegs(
+        n_in,
+        n_out,
+        length_in,
+        length_out,
+        (wx, wy),
+        (ux, uy),
+        arriving,
+        start / length_in,
+        slope_out,
+    )
+
+
+@jit(inner=True)
+def rim_met(
+    trace: Trace, rim: Rim, legs: RimLegs, nudges: tuple[float, float], work: RimWork
+) -> tuple[Lanes, Mask]:
+    """How many walls paths go through, and which touch a rim, as for `unfolding.walls_met`."""
+    view, height, z = trace.plan, trace.radio.height, lanes_of(trace.source[2])
+    before, at_rims = met(view, work.leg_in, legs.n_in, z, legs.slope_in, height, nudges[0])
+    leg, z = work.room.leg, lanes_of(rim.z)
+    behind, also = met(view, leg, legs.n_out, z, legs.slope_out, height, nudges[1])
+    return before + behind, at_rims | also
+
+
+@jit(inner=True, fast=True)
+def with_rim_path(
+    bundle: Bundle,
+    trace: Trace,
+    rim: Rim,
+    path: RimPath,
+    trees: tuple[Tree, StripTree],
+    block: Block,
+    share: Lanes,
+    work: RimWork,
+    record: Record,
+    images: tuple[int, int, int],
+    order: int,
+) -> Bundle:
+    """Sums with paths over the rim, those that touch another rim looked at from both sides."""
+    legs = rim_legs(trace, rim, path, trees, block, work)
+    touching, detour = share >= 0.0, path.before + path.after - block.straight
+    for look in range(len(RIM_LOOKS)):
+        nudges = RIM_LOOKS[look]
+        through, at_rims = rim_met(trace, rim, legs, nudges, work)
+        fits = share * fitting(through, trace.max_walls)
+        fits, touching = share_of_look(look, fits, touching, at_rims, 0.25)
+        if any_of(fits > 0.0):
+            gain = rim_gain(trace, rim, path, legs, trees[0].beam, nudges, through, work)
+            counted(work.room, order, fits)
+            bundle = with_path(bundle, gain, detour, fits, legs.arriving)
+            if record.used[0] >= 0:
+                at = (images[1], images[2], look)
+                recorded(record, (block.first, block.n), images[0], at, gain, fits)
+        if not any_of(touching):
+            break
+    return bundle
+
+
+@jit(fast=True, inner=True)
+def rim_gain(
+    trace: Trace,
+    rim: Rim,
+    path: RimPath,
+    legs: RimLegs,
+    images: Floats,
+    nudges: tuple[float, float],
+    through: Lanes,
+    work: RimWork,
+) -> ComplexLanes:
+    """Gains of paths.
+
+    Parameters
+    ----------
+    trace, rim, path, legs
+        The trace, the edge, where the paths cross it, and their legs.
+    images
+        (n, >= 2) of the source in its beams [m].
+    nudges, through
+        How they are looked at before and behind the edge, and how many walls they go through.
+    work
+        What they meet.
+    """
+    view, radio, frame = trace.plan, trace.radio, rim.frame
+    ray_in = new_ray(radio, legs.slope_in, path.bounces_in)
+    ray_out = new_ray(radio, legs.slope_out, path.bounces_out)
+    heights = lanes_of(trace.source[2]), nudges[0]
+    wave = sent(radio, legs.departure, ray_in)
+    wave = carry(view, radio, work.leg_in, legs.n_in, legs.length_in, ray_in, heights, wave)
     # direction of arrival at the edge, from the image of the source in the last beam
-    tree = trees[0]
     x, y = from_frame(frame, path.u)
-    vx = (x - tree.beam[path.beam_in, IMAGE_X]) / length_in
-    vy = (y - tree.beam[path.beam_in, IMAGE_Y]) / length_in
-    per_before = 1.0 / path.before
+    vx = (x - images[path.beam_in, IMAGE_X]) / legs.length_in
+    vy = (y - images[path.beam_in, IMAGE_Y]) / legs.length_in
+    rise_in, per_before = rim.z - path.z_source, 1.0 / path.before
     sin_beta = math.hypot(rise_in, path.h_source) * per_before
+    ux, uy = legs.leaving
     cos_beta = ray_out.cos_el * (ux * frame[0] + uy * frame[1]) * -rim.up
     # into the edge's polarisations, along it and across, and out again: two rotations
     along, across = turned_to_edge(frame, vx, vy, rise_in * per_before)
@@ -420,23 +493,19 @@ def rim_gain(
         (wave.upright * along + wave.level * across) * per_turn,
         (wave.level * along - wave.upright * across) * per_turn,
     )
-    through = lanes_of(0.0)
-    if trace.max_walls > 0:
-        walls, _ = rim_met(trace, rim, (n_in, n_out), slopes, (NUDGE_M, NUDGE_M), work)
-        through = where(allowed(walls, trace.max_walls - 1), lanes_of(1.0), 0.0)
-    parallel, normal = over_rim(radio, rim, path, (sin_beta, cos_beta), at_edge, through, work)
+    shining = fitting(through, trace.max_walls - 1)
+    parallel, normal = over_rim(radio, rim, path, (sin_beta, cos_beta), at_edge, shining, work)
     along, across = turned_to_edge(frame, ux, uy, ray_out.sin_el)
-    none = lanes_of(0.0)
+    none, leg = lanes_of(0.0), work.room.leg
     upright, level = parallel * along - normal * across, parallel * across + normal * along
-    wave = Wave(upright, level, ray_out.sin_el, none)
-    wave = carry(view, radio, work.room.leg, n_out, length_out, ray_out, none + rim.z, wave)
+    wave, heights = Wave(upright, level, ray_out.sin_el, none), (lanes_of(rim.z), nudges[1])
+    wave = carry(view, radio, leg, legs.n_out, legs.length_out, ray_out, heights, wave)
     total = path.before + path.after
-    size = (radio.wavelength / (4.0 * math.pi)) / (
-        sqrt(path.before * path.after * total) * sin_beta
-    )
+    product = path.before * path.after
+    size = (radio.wavelength / (4.0 * math.pi)) / (sqrt(product * total) * sin_beta)
     turned = phasor(radio.cis, total * (1.0 / radio.wavelength))
-    gain = received(radio, wave, arriving) * (turned * size)
-    return share, gain * common_factor(2.0, radio.wavelength), arriving
+    gain = received(radio, wave, legs.arriving) * (turned * size)
+    return gain * common_factor(2.0, radio.wavelength)
 
 
 @jit(inline=True, fast=True)

@@ -9,7 +9,7 @@ from raytrace.kernels.beams import Hits, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import EDGE_OF_STOREY
 from raytrace.kernels.lanes import lane, lanes_of
-from raytrace.kernels.level_edges import Rim, RimLegsIn, new_work, unfold_over_rim
+from raytrace.kernels.level_edges import RIM_LOOKS, Rim, RimLegsIn, new_work, unfold_over_rim
 from raytrace.kernels.plan_view import Floats, PlanView, folded, material_at
 from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import Record, Trace
@@ -18,6 +18,7 @@ from raytrace.kernels.unfolding import (
     ITEM_X,
     ITEM_Y,
     KIND,
+    LOOKS,
     PASS_PARTIAL,
     PASS_WALL,
     WHAT,
@@ -56,7 +57,7 @@ def interaction(view: PlanView, mark: int, what: int, z: float) -> int:
 def add_leg(
     view: PlanView,
     whole: tuple[Leg, int, float],
-    heights: tuple[float, float, float],
+    heights: tuple[float, float, float, float],
     end: tuple[float, float],
     points: Floats,
     kinds: NDArray[np.int8],
@@ -71,7 +72,8 @@ def add_leg(
     whole
         The leg (the first of eight), its number of items, its horizontal length [m].
     heights
-        Unfolded height at its root [m], slope, and height of the ceiling [m].
+        Unfolded height at its root [m], slope, height of the ceiling [m], and nudge [m] of the look
+        at it.
     end
         Where it ends in the plan view [m]; `points[k - 1]` is where it begins.
     points, kinds, k
@@ -82,7 +84,7 @@ def add_leg(
     int
         How many points there are now.
     """
-    (leg, n, length), (z_root, slope, height) = whole, heights
+    (leg, n, length), (z_root, slope, height, nudge) = whole, heights
     done, x, y = 0.0, points[k - 1, 0], points[k - 1, 1]
     rising = math.copysign(1.0, slope)
     storey = math.floor(z_root / height - rising * EDGE_OF_STOREY) + max(rising, 0.0)
@@ -99,7 +101,8 @@ def add_leg(
             storey += rising
         if not last:
             z = folded(z_root + slope * distance, height)
-            kind = interaction(view, leg.marks[item, KIND], leg.marks[item, WHAT], z)
+            beside = folded(z_root + slope * distance + nudge, height)
+            kind = interaction(view, leg.marks[item, KIND], leg.marks[item, WHAT], beside)
             if kind != NOTHING:
                 k = add_point(points, kinds, k, kind, (to_x, to_y, z))
         done, x, y = distance, to_x, to_y
@@ -150,7 +153,7 @@ def reflection_points(
         n, length = unfold_one(trace.plan, tree, i, end, leg)
         slope = (trace.image_z[trace.level[r], record.key[path, 3]] - z) / length
         k = start_path(trace, points[path])
-        heights = (z, slope, trace.radio.height)
+        heights = (z, slope, trace.radio.height, LOOKS[record.key[path, 4]])
         k = add_leg(trace.plan, (leg, n, length), heights, end, points[path], kinds[path], k)
         finish_path(trace, r, points[path], k)
 
@@ -180,10 +183,12 @@ def upright_points(
         z_edge = z + slope * length_in
         row, kind = points[path], kinds[path]
         k = start_path(trace, row)
-        at = (edge.x, edge.y)
-        k = add_leg(trace.plan, (leg_in, n_in, length_in), (z, slope, height), at, row, kind, k)
+        at, nudge = (edge.x, edge.y), LOOKS[record.key[path, 4]]
+        heights = (z, slope, height, nudge)
+        k = add_leg(trace.plan, (leg_in, n_in, length_in), heights, at, row, kind, k)
         k = add_point(row, kind, k, DIFFRACTION, (edge.x, edge.y, folded(z_edge, height)))
-        k = add_leg(trace.plan, (leg, n, length), (z_edge, slope, height), end, row, kind, k)
+        heights = (z_edge, slope, height, nudge)
+        k = add_leg(trace.plan, (leg, n, length), heights, end, row, kind, k)
         finish_path(trace, r, row, k)
 
 
@@ -222,9 +227,10 @@ def level_points(
         slope = (-rise_in if bounces[a] & 1 else rise_in) / length_in
         row, kind = points[path], kinds[path]
         k = start_path(trace, row)
-        heights = (trace.source[2], slope, height)
+        nudges = RIM_LOOKS[record.key[path, 4]]
+        heights = (trace.source[2], slope, height, nudges[0])
         k = add_leg(trace.plan, (work.leg_in, n_in, length_in), heights, at, row, kind, k)
         k = add_point(row, kind, k, DIFFRACTION, (at[0], at[1], rim.z))
-        heights = (rim.z, rise_out / length, height)
+        heights = (rim.z, rise_out / length, height, nudges[1])
         k = add_leg(trace.plan, (work.room.leg, n, length), heights, end, row, kind, k)
         finish_path(trace, r, row, k)

@@ -21,7 +21,7 @@ from raytrace.kernels.tracing import (
     strong,
     with_path,
 )
-from raytrace.kernels.unfolding import fitting, unfold
+from raytrace.kernels.unfolding import LOOKS, fitting, share_of_look, unfold, walls_met
 
 
 @jit(fast=True, allocates=False)
@@ -63,18 +63,26 @@ def sum_reflections(
         bundle = no_paths()
         for k in range(n_images):
             slope = (load(room.image_z[k]) - z_source) * per_length
-            share = share_here * fitting(trace.plan, leg, n, z_root, slope, height, trace.max_walls)
-            if not any_of(share > 0.0):
-                continue
-            ray = new_ray(trace.radio, slope, trace.image_bounces[k])
-            wave = sent(trace.radio, (ux, uy), ray)
-            wave = carried(trace.plan, trace.radio, leg, n, length, ray, z_root, wave)
-            distance = length * ray.stretch
-            turned = phasor(trace.radio.cis, distance * (1.0 / wavelength))
-            size = (wavelength / (4.0 * math.pi)) / distance
-            gain = received(trace.radio, wave, arriving) * (turned * size)
-            counted(room, order + ray.bounces, share)
-            bundle = with_path(bundle, gain, distance - block.straight, share, arriving)
-            if record.used[0] >= 0:
-                recorded(record, (block.first, block.n), -1, (-1, k), gain, share)
+            touching = share_here >= 0.0
+            for look, nudge in enumerate(LOOKS):
+                through, at_rims = walls_met(trace.plan, leg, n, z_root, slope, height, nudge)
+                share = share_here * fitting(through, trace.max_walls)
+                share, touching = share_of_look(look, share, touching, at_rims, 0.5)
+                if any_of(share > 0.0):
+                    ray = new_ray(trace.radio, slope, trace.image_bounces[k])
+                    wave = sent(trace.radio, (ux, uy), ray)
+                    heights = z_root, nudge
+                    wave = carried(trace.plan, trace.radio, leg, n, length, ray, heights, wave)
+                    distance = length * ray.stretch
+                    turned = phasor(trace.radio.cis, distance * (1.0 / wavelength))
+                    size = (wavelength / (4.0 * math.pi)) / distance
+                    gain = received(trace.radio, wave, arriving) * (turned * size)
+                    counted(room, order + ray.bounces, share)
+                    detour = distance - block.straight
+                    bundle = with_path(bundle, gain, detour, share, arriving)
+                    if record.used[0] >= 0:
+                        hit = (block.first, block.n)
+                        recorded(record, hit, -1, (-1, k, look), gain, share)
+                if not any_of(touching):
+                    break
         add_bundle(sums, block, bundle, room)

@@ -113,8 +113,8 @@ class Record(NamedTuple):
     Attributes
     ----------
     key
-        (n, 4) int32 hit, leg to the edge, height image before and after it; -1 where the path
-        has none.
+        (n, 5) int32 hit, leg to the edge, height image before and after it, -1 where the path
+        has none; and which of the `LOOKS` at it this is.
     gain, share
         (n,) complex path gain, and share at a tie.
     used
@@ -142,7 +142,7 @@ def new_sums(n_receivers: int, max_order: int) -> Sums:
 def new_record(n_paths: int) -> Record:
     """Room for that many paths."""
     return Record(
-        np.empty((n_paths, 4), np.int32),
+        np.empty((n_paths, 5), np.int32),
         np.empty(n_paths, np.complex128),
         np.empty(n_paths),
         np.zeros(1, np.int64),
@@ -396,18 +396,21 @@ def recorded(
     record: Record,
     block: tuple[int, int],
     leg: int,
-    images: tuple[int, int],
+    images: tuple[int, int, int],
     gain: ComplexLanes,
     share: Lanes,
 ) -> None:
-    """Write paths down if there is room: those of a block's first hit, and so many."""
+    """Write paths down if there is room: those of a block's first hit, and so many.
+
+    `images` are the height images and the look, see `Record`.
+    """
     for j in range(block[1]):
         if lane(share, j) == 0.0:
             continue
         k = record.used[0]
         if k < len(record.gain):
             record.key[k, 0], record.key[k, 1] = block[0] + j, leg
-            record.key[k, 2], record.key[k, 3] = images
+            record.key[k, 2], record.key[k, 3], record.key[k, 4] = images
             record.gain[k] = complex(lane(real_of(gain), j), lane(imag_of(gain), j))
             record.share[k] = lane(share, j)
         record.used[0] = k + 1

@@ -17,7 +17,6 @@ from raytrace.kernels.lanes import (
     Lanes,
     Mask,
     absolute,
-    any_of,
     floor,
     lanes_of,
     load,
@@ -45,6 +44,10 @@ MISFIT = -1e6
 
 NUDGE_M = 2.0 * TIE_M
 """How far above and below a leg that touches a rim it is looked at."""
+
+LOOKS = (0.0, -NUDGE_M, NUDGE_M)
+"""Nudges with which a path is looked at: as it is, and if it touches a rim from both sides, where
+it counts half each, as it is there (docs/theory.md, section 14)."""
 
 NEAREST_M = 1e-9
 """Shortest horizontal leg [m]: a receiver straight above the source is taken this far off."""
@@ -241,44 +244,29 @@ def walls_met(
 
 
 @jit(inline=True)
-def allowed(through: Lanes, most_walls: int) -> Mask:
-    """Which paths go through no more walls than they may, and fit."""
-    return (through >= 0.0) & (through <= float(most_walls))
+def fitting(through: Lanes, most_walls: int) -> Lanes:
+    """1 for paths that fit and go through no more walls than they may, else 0."""
+    return where((through >= 0.0) & (through <= float(most_walls)), lanes_of(1.0), 0.0)
 
 
 @jit(inline=True)
-def weighed(
-    share: Lanes, touching: Mask, through: Lanes, at_rims: Mask, nudge: float, most_walls: int
+def share_of_look(
+    look: int, share: Lanes, touching: Mask, at_rims: Mask, part: float
 ) -> tuple[Lanes, Mask]:
-    """Shares of paths after a look at them, and which ones touch a rim.
+    """Shares of paths with which a look at them counts, and which of them touch a rim.
 
     Parameters
     ----------
-    share, touching
-        So far; of those that touch a rim, the looks from above and below count half.
-    through, at_rims, nudge
-        See `walls_met`.
-    most_walls
-        Most walls that a path may go through.
+    look, share
+        Which look, 0 the first, and the shares of the paths that fit in it.
+    touching, at_rims
+        Which paths touched a rim in the first look, and which do in this.
+    part
+        With which part of them the further looks at such a path count.
     """
-    fits = where(allowed(through, most_walls), lanes_of(1.0), 0.0)
-    if nudge == 0.0:
-        return where(at_rims, 0.0, fits), at_rims
-    return where(touching, share + 0.5 * fits, share), touching
-
-
-@jit(inline=True)
-def fitting(
-    view: PlanView, leg: Leg, n: int, z_root: Lanes, slope: Lanes, height: float, most_walls: int
-) -> Lanes:
-    """Shares of legs that their heights allow: 1, 0, or one half where one touches a rim."""
-    share, touching = lanes_of(0.0), none_chosen()
-    for nudge in (0.0, -NUDGE_M, NUDGE_M):
-        through, at_rims = walls_met(view, leg, n, z_root, slope, height, nudge)
-        share, touching = weighed(share, touching, through, at_rims, nudge, most_walls)
-        if not any_of(touching):
-            break
-    return share
+    if look == 0:
+        return where(at_rims, 0.0, share), at_rims
+    return where(touching, share * part, 0.0), touching
 
 
 @jit(inline=True)

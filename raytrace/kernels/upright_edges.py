@@ -45,16 +45,16 @@ from raytrace.kernels.tracing import (
     with_path,
 )
 from raytrace.kernels.unfolding import (
+    LOOKS,
     MISFIT,
-    NUDGE_M,
     Leg,
-    allowed,
+    fitting,
     in_building,
     is_constrained,
     most_items,
+    share_of_look,
     unfold,
     walls_met,
-    weighed,
 )
 from raytrace.kernels.utd import (
     ALONG_FACE,
@@ -263,30 +263,17 @@ def pair_met(
     return through, touching
 
 
-@jit(inline=True)
-def pair_fitting(trace: Trace, edge: Edge, pair: Pair, slope: Lanes) -> Lanes:
-    """Shares of paths that edge and walls allow at their heights (see `unfolding.fitting`)."""
-    share, touching = lanes_of(0.0), none_chosen()
-    for nudge in (0.0, -NUDGE_M, NUDGE_M):
-        through, at_rims = pair_met(trace, edge, pair, slope, nudge)
-        share, touching = weighed(share, touching, through, at_rims, nudge, trace.max_walls)
-        if not any_of(touching):
-            break
-    return share
-
-
-@jit(inner=True)
-def shining(trace: Trace, edge: Edge, pair: Pair, slope: Lanes) -> Lanes:
-    """1 for paths that may go through one wall more, else 0."""
-    through, _ = pair_met(trace, edge, pair, slope, NUDGE_M)
-    return where(allowed(through, trace.max_walls - 1), lanes_of(1.0), 0.0)
-
-
 @jit(inline=True, fast=True)
 def pair_gain(
-    trace: Trace, edge: Edge, pair: Pair, slope: Lanes, bounces: int
+    trace: Trace,
+    edge: Edge,
+    pair: Pair,
+    slope: Lanes,
+    bounces: int,
+    nudge: float,
+    through: Lanes,
 ) -> tuple[ComplexLanes, Lanes]:
-    """Gains of paths without the wedge's common factor, and their lengths [m].
+    """Gains of paths through so many walls, without the common factor, and their lengths [m].
 
     With every length its horizontal part over cos_el, and sin beta = cos_el, the spreading factor
     1 / (sqrt(s s' (s + s')) sin beta) is sqrt(cos_el) over the root of the horizontal parts
@@ -297,10 +284,8 @@ def pair_gain(
     ray = new_ray(radio, slope, bounces)
     root = sqrt(ray.cos_el)
     wave = sent(radio, pair.departure, ray)
-    wave = carried(plan, radio, pair.leg_in, pair.n_in, lanes_of(pair.length_in), ray, z_root, wave)
-    through = lanes_of(0.0)
-    if trace.max_walls > 0:
-        through = shining(trace, edge, pair, slope)
+    heights, length_in = (z_root, nudge), lanes_of(pair.length_in)
+    wave = carried(plan, radio, pair.leg_in, pair.n_in, length_in, ray, heights, wave)
     field = diffracted(
         radio,
         edge.wedge,
@@ -308,11 +293,11 @@ def pair_gain(
         pair.spread * root,
         (ray.cos_el, wave.rising),
         (wave.upright, wave.level),
-        through,
+        fitting(through, trace.max_walls - 1),
     )
     wave = Wave(field[0], field[1], wave.rising, wave.done)
-    z_edge = z_root + slope * pair.length_in
-    wave = carried(plan, radio, pair.leg_out, pair.n_out, pair.length_out, ray, z_edge, wave)
+    heights = z_root + slope * pair.length_in, nudge
+    wave = carried(plan, radio, pair.leg_out, pair.n_out, pair.length_out, ray, heights, wave)
     distance = pair.total * ray.stretch
     turned = phasor(radio.cis, distance * (1.0 / radio.wavelength))
     return received(radio, wave, pair.arriving) * (turned * (pair.size * root)), distance
@@ -424,14 +409,22 @@ def sum_upright_edge(
                 share_here = strong(trace, sums, room, bound, share_here, float(n_images))
             for k in range(n_images):
                 slope = (load(room.image_z[k]) - trace.source[2]) * per_total
-                share = share_here * pair_fitting(trace, edge, pair, slope)
-                if not any_of(share > 0.0):
-                    continue
-                bounces = trace.image_bounces[k]
-                gain, distance = pair_gain(trace, edge, pair, slope, bounces)
-                gain = gain * common
-                counted(room, order + bounces, share)
-                bundle = with_path(bundle, gain, distance - block.straight, share, arriving)
-                if record.used[0] >= 0:
-                    recorded(record, (block.first, block.n), p, (-1, k), gain, share)
+                touching, bounces = share_here >= 0.0, trace.image_bounces[k]
+                for look, nudge in enumerate(LOOKS):
+                    through, at_rims = pair_met(trace, edge, pair, slope, nudge)
+                    share = share_here * fitting(through, trace.max_walls)
+                    share, touching = share_of_look(look, share, touching, at_rims, 0.5)
+                    if any_of(share > 0.0):
+                        gain, distance = pair_gain(
+                            trace, edge, pair, slope, bounces, nudge, through
+                        )
+                        gain = gain * common
+                        counted(room, order + bounces, share)
+                        detour = distance - block.straight
+                        bundle = with_path(bundle, gain, detour, share, arriving)
+                        if record.used[0] >= 0:
+                            hit = (block.first, block.n)
+                            recorded(record, hit, p, (-1, k, look), gain, share)
+                    if not any_of(touching):
+                        break
         add_bundle(sums, block, bundle, room)

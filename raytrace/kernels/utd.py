@@ -98,7 +98,7 @@ class WedgeTerms(NamedTuple):
     cotangent, detour
         Of the four terms: their cotangents and the |cos| of their transition angles. Terms 0 and 1
         belong to phi - phi', 2 (n-face) and 3 (o-face) to phi + phi'. 0 for a sheet.
-    cos_minus, cos_plus, sin_plus
+    cos_minus, sin_minus, cos_plus, sin_plus
         Of (phi - phi') / 2 and (phi + phi') / 2, all that a sheet needs.
     o_cosine, n_cosine
         Cosine of incidence on either face, over sin beta.
@@ -109,6 +109,7 @@ class WedgeTerms(NamedTuple):
     cotangent: tuple[Lanes, Lanes, Lanes, Lanes]
     detour: tuple[Lanes, Lanes, Lanes, Lanes]
     cos_minus: Lanes
+    sin_minus: Lanes
     cos_plus: Lanes
     sin_plus: Lanes
     o_cosine: Lanes
@@ -252,8 +253,9 @@ def wedge_terms(wedge: Wedge, at: FaceAngles, source: FaceAngles, tie: Lanes) ->
         )
         cotangents = wedge_cotangents(wedge, at, source)
     return WedgeTerms(
-        cotangents, detours, cos_minus, cos_plus, sin_plus, o_cosine, n_cosine, o_turn, n_turn
-    )
+        cotangents, detours, cos_minus, sin_minus, cos_plus, sin_plus, o_cosine, n_cosine,
+        o_turn, n_turn,
+    )  # fmt: skip
 
 
 @jit(inline=True, fast=True)
@@ -368,11 +370,9 @@ def let_past(
     tm, mix = slab_lookup(radio.through, radio.slab_rows, slab, cosine)
     difference = mix * (1.0 - cosine * cosine)
     straight, slant = 1.0 - terms.o_cosine * terms.o_cosine, beta[1] * terms.o_turn
-    per_size = 1.0 / (straight * straight + slant * slant + 1e-30)
-    turned, mixed = (
-        difference * (slant * slant * per_size),
-        difference * (straight * slant * per_size),
-    )
+    share = slant / (straight * straight + slant * slant + 1e-30)
+    # the face that is met from the other side turns the other way
+    turned, mixed = difference * (share * slant), difference * (share * straight * terms.sin_minus)
     through_along = (tm + difference - turned) * along + mixed * across
     through_across = (tm + turned) * across + mixed * along
     return through_along, through_across

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import reference_field
-from buildings import CONCRETE, Building, Sheet, box, wall
+from buildings import CONCRETE, PLASTERBOARD, Building, Sheet, box, wall
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -133,18 +133,22 @@ def lintel(slab: int) -> Building:
     return hall(*wall((20.0, 0.0), (20.0, 40.0), slab=slab, low=6.0, high=HALL_HEIGHT_M))
 
 
-def total_field(building: Building, source: Floats, receivers: Floats) -> Floats:
-    paths = trace_paths(building.scene, Transmitter(tuple(source)), receivers, TraceConfig(1, 1))
+def total_field(building: Building, source: Floats, receivers: Floats, walls: int = 0) -> Floats:
+    limits = TraceConfig(1, 1, walls)
+    paths = trace_paths(building.scene, Transmitter(tuple(source)), receivers, limits)
     field = np.zeros(len(receivers), dtype=np.complex128)
     np.add.at(field, paths.receiver, paths.gain)
     return field
 
 
-def jump_db(building: Building, source: Floats, middle: Floats, sideways: Floats) -> float:
+def jump_db(
+    building: Building, source: Floats, middle: Floats, sideways: Floats, walls: int = 0
+) -> float:
     """Largest step of the field over a boundary through `middle`, both sides carried on to it."""
     steps = np.array([1e-6, 1e-5, 1e-4, 1e-3])
     offsets = np.concatenate([side * near * steps for side in (-1, 1) for near in (1, 2, 3)])
-    field = total_field(building, source, middle + offsets[:, None] * sideways).reshape(2, 3, -1)
+    receivers = middle + offsets[:, None] * sideways
+    field = total_field(building, source, receivers, walls).reshape(2, 3, -1)
     carried_on = 3.0 * field[:, 0] - 3.0 * field[:, 1] + field[:, 2]
     return float(np.abs(20.0 * np.log10(np.abs(carried_on[0] / carried_on[1]))).max())
 
@@ -185,3 +189,22 @@ def test_half_the_field_is_left_on_an_incident_boundary(edge: str) -> None:
     free = total_field(hall(), source, middle[None])
     levels = 20.0 * np.log10(np.abs(shadowed / free))
     np.testing.assert_allclose(levels, -6.02, atol=0.1)
+
+
+SHEETS = ("upright, level rays", "upright, sloped rays", "lintel", "lintel, skew rays")
+
+
+@pytest.mark.parametrize("screen", ["absorbing", "concrete", "plasterboard"])
+@pytest.mark.parametrize("face", ["one face", "the other face"])
+@pytest.mark.parametrize("edge", SHEETS)
+@pytest.mark.parametrize("boundary", ["incident", "reflected"])
+def test_nor_has_it_where_paths_go_through_the_screen(
+    edge: str, face: str, screen: str, boundary: str
+) -> None:
+    build, source, tip = EDGES[edge]
+    if face == "the other face":
+        source = np.array([40.0 - source[0], *source[1:]])
+    mirror = (1.0, 1.0, 1.0) if boundary == "incident" else (-1.0, 1.0, 1.0)
+    middle, sideways = beyond(source, np.array(tip), mirror)
+    slab = PLASTERBOARD if screen == "plasterboard" else SCREENS[screen]
+    assert jump_db(build(slab), source, middle, sideways, walls=1) < 0.03
