@@ -5,7 +5,7 @@ import math
 from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Hits, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import carried, new_ray, phasor, received, sent
-from raytrace.kernels.lanes import any_of, lanes_of, load
+from raytrace.kernels.lanes import any_of, lanes_of, load, none_chosen
 from raytrace.kernels.tracing import (
     Record,
     Room,
@@ -21,7 +21,7 @@ from raytrace.kernels.tracing import (
     strong,
     with_path,
 )
-from raytrace.kernels.unfolding import LOOKS, fitting, share_of_look, unfold, walls_met
+from raytrace.kernels.unfolding import LOOKS, fitting, next_look, share_of_look, unfold, walls_met
 
 
 @jit(fast=True, allocates=False)
@@ -61,28 +61,24 @@ def sum_reflections(
             bound = free_space(trace, length) * leg_bound(trace, leg, n, length, order)
             share_here = strong(trace, sums, room, bound, share_here, float(n_images))
         bundle = no_paths()
-        for k in range(n_images):
-            slope = (load(room.image_z[k]) - z_source) * per_length
-            touching = share_here >= 0.0
-            for look, nudge in enumerate(LOOKS):
-                through, at_rims = walls_met(trace.plan, leg, n, z_root, slope, height, nudge)
-                share = share_here * fitting(through, trace.max_walls)
-                share, touching = share_of_look(look, share, touching, at_rims, 0.5)
-                if any_of(share > 0.0):
-                    ray = new_ray(trace.radio, slope, trace.image_bounces[k])
-                    wave = sent(trace.radio, (ux, uy), ray)
-                    heights = z_root, nudge
-                    wave = carried(trace.plan, trace.radio, leg, n, length, ray, heights, wave)
-                    distance = length * ray.stretch
-                    turned = phasor(trace.radio.cis, distance * (1.0 / wavelength))
-                    size = (wavelength / (4.0 * math.pi)) / distance
-                    gain = received(trace.radio, wave, arriving) * (turned * size)
-                    counted(room, order + ray.bounces, share)
-                    detour = distance - block.straight
-                    bundle = with_path(bundle, gain, detour, share, arriving)
-                    if record.used[0] >= 0:
-                        hit = (block.first, block.n)
-                        recorded(record, hit, -1, (-1, k, look), gain, share)
-                if not any_of(touching):
-                    break
+        k, look, touching = 0, 0, none_chosen()
+        while k < n_images:
+            slope, nudge = (load(room.image_z[k]) - z_source) * per_length, LOOKS[look]
+            through, at_rims = walls_met(trace.plan, leg, n, z_root, slope, height, nudge)
+            share = share_here * fitting(through, trace.max_walls)
+            share, touching = share_of_look(look, share, touching, at_rims, 0.5)
+            if any_of(share > 0.0):
+                ray, heights = new_ray(trace.radio, slope, trace.image_bounces[k]), (z_root, nudge)
+                wave = sent(trace.radio, (ux, uy), ray)
+                wave = carried(trace.plan, trace.radio, leg, n, length, ray, heights, wave)
+                distance = length * ray.stretch
+                turned = phasor(trace.radio.cis, distance * (1.0 / wavelength))
+                size = (wavelength / (4.0 * math.pi)) / distance
+                gain = received(trace.radio, wave, arriving) * (turned * size)
+                counted(room, order + ray.bounces, share)
+                bundle = with_path(bundle, gain, distance - block.straight, share, arriving)
+                if record.used[0] >= 0:
+                    hit = (block.first, block.n)
+                    recorded(record, hit, -1, (-1, k, look), gain, share)
+            k, look = next_look(k, look, touching)
         add_bundle(sums, block, bundle, room)

@@ -17,6 +17,7 @@ from raytrace.kernels.lanes import (
     Lanes,
     Mask,
     absolute,
+    any_of,
     floor,
     lanes_of,
     load,
@@ -267,6 +268,14 @@ def share_of_look(
     if look == 0:
         return where(at_rims, 0.0, share), at_rims
     return where(touching, share * part, 0.0), touching
+
+
+@jit(inline=True)
+def next_look(k: int, look: int, touching: Mask) -> tuple[int, int]:
+    """Image height and look that follow: another look if a path touches a rim."""
+    if look + 1 < len(LOOKS) and any_of(touching):
+        return k, look + 1
+    return k + 1, 0
 
 
 @jit(inline=True)

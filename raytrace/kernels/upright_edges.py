@@ -52,6 +52,7 @@ from raytrace.kernels.unfolding import (
     in_building,
     is_constrained,
     most_items,
+    next_look,
     share_of_look,
     unfold,
     walls_met,
@@ -407,24 +408,21 @@ def sum_upright_edge(
                 bound = wedge_bound(trace, edge.wedge.is_sheet, cosines, spread, total, order)
                 bound = bound * bound_out * legs_in.bound[p]
                 share_here = strong(trace, sums, room, bound, share_here, float(n_images))
-            for k in range(n_images):
+            k, look, touching = 0, 0, none_chosen()
+            while k < n_images:
                 slope = (load(room.image_z[k]) - trace.source[2]) * per_total
-                touching, bounces = share_here >= 0.0, trace.image_bounces[k]
-                for look, nudge in enumerate(LOOKS):
-                    through, at_rims = pair_met(trace, edge, pair, slope, nudge)
-                    share = share_here * fitting(through, trace.max_walls)
-                    share, touching = share_of_look(look, share, touching, at_rims, 0.5)
-                    if any_of(share > 0.0):
-                        gain, distance = pair_gain(
-                            trace, edge, pair, slope, bounces, nudge, through
-                        )
-                        gain = gain * common
-                        counted(room, order + bounces, share)
-                        detour = distance - block.straight
-                        bundle = with_path(bundle, gain, detour, share, arriving)
-                        if record.used[0] >= 0:
-                            hit = (block.first, block.n)
-                            recorded(record, hit, p, (-1, k, look), gain, share)
-                    if not any_of(touching):
-                        break
+                bounces, nudge = trace.image_bounces[k], LOOKS[look]
+                through, at_rims = pair_met(trace, edge, pair, slope, nudge)
+                share = share_here * fitting(through, trace.max_walls)
+                share, touching = share_of_look(look, share, touching, at_rims, 0.5)
+                if any_of(share > 0.0):
+                    gain, distance = pair_gain(trace, edge, pair, slope, bounces, nudge, through)
+                    gain = gain * common
+                    counted(room, order + bounces, share)
+                    detour = distance - block.straight
+                    bundle = with_path(bundle, gain, detour, share, arriving)
+                    if record.used[0] >= 0:
+                        hit = (block.first, block.n)
+                        recorded(record, hit, p, (-1, k, look), gain, share)
+                k, look = next_look(k, look, touching)
         add_bundle(sums, block, bundle, room)
