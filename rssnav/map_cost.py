@@ -6,7 +6,7 @@ LONG_S = 60.0
 """A map that takes longer is announced [s]."""
 
 MOST_QUICK_WORK = 2e6
-"""Maps of less `work` are not estimated: the largest of them take some ten seconds."""
+"""Maps of less `work` are not estimated: the largest of them take some seconds."""
 
 
 def work(scene: Scene, grid: Grid, config: TraceConfig) -> float:
