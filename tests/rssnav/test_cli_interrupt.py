@@ -11,7 +11,7 @@ from cli_plans import ROOM, done, room_file
 
 from rssnav import TrainingResult
 
-LONG_MAP = ("map", "scenario2", "--threads", "1")
+LONG_MAP = ("map", "scenario2", "--cell-size", "0.25", "--threads", "1")
 LONG_TRAINING = ("--agent", "location", "--runs", "100000", "--episodes", "200")
 TIMEOUT_S = 240.0
 
