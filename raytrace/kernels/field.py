@@ -223,6 +223,8 @@ def bounced(ray: Ray, storeys: Lanes, wave: Wave) -> Wave:
         return wave
     upright, level, rising, done = wave
     due = absolute(floor(storeys - copysign(lanes_of(EDGE_OF_STOREY), ray.slope)))
+    # a ray that is not one, beside seven that are, may have been unfolded to anywhere
+    due = minimum(due, float(ray.bounces))
     late = done < due
     while any_of(late):
         upwards = rising > 0.0
