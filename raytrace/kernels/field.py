@@ -155,16 +155,22 @@ def steps_into(t: Lanes, steps: int) -> tuple[Lanes, Lanes]:
 
 
 @jit(inline=True, fast=True)
+def row_between(table: Floats, row: Lanes, w: Lanes) -> tuple[ComplexLanes, ComplexLanes]:
+    """Two complex entries between a row of a table and the next."""
+    a, b, c, d, a2, b2, c2, d2 = gather_pairs4(table, row)
+    return (
+        complex_of(a + (a2 - a) * w, b + (b2 - b) * w),
+        complex_of(c + (c2 - c) * w, d + (d2 - d) * w),
+    )
+
+
+@jit(inline=True, fast=True)
 def slab_lookup(
     slabs: Floats, rows: int, slab: Lanes, cosine: Lanes
 ) -> tuple[ComplexLanes, ComplexLanes]:
     """R_tm and (R_te + R_tm) / sin^2, or T_tm and (T_te - T_tm) / sin^2, of slabs."""
     row, w = steps_into(cosine * (rows - 2.0), rows - 2)
-    a, b, c, d, a2, b2, c2, d2 = gather_pairs4(slabs, slab * float(rows) + row)
-    return (
-        complex_of(a + (a2 - a) * w, b + (b2 - b) * w),
-        complex_of(c + (c2 - c) * w, d + (d2 - d) * w),
-    )
+    return row_between(slabs, slab * float(rows) + row, w)
 
 
 @jit(inline=True, fast=True)
@@ -345,16 +351,6 @@ def pattern_at(
     below = row_between(pattern, i * float(azimuths) + j, w)
     above = row_between(pattern, (i + 1.0) * float(azimuths) + j, w)
     return below[0] * (1.0 - v) + above[0] * v, below[1] * (1.0 - v) + above[1] * v
-
-
-@jit(inline=True)
-def row_between(pattern: Floats, row: Lanes, w: Lanes) -> tuple[ComplexLanes, ComplexLanes]:
-    """Entries between a row and the next."""
-    a, b, c, d, a2, b2, c2, d2 = gather_pairs4(pattern, row)
-    return (
-        complex_of(a + (a2 - a) * w, b + (b2 - b) * w),
-        complex_of(c + (c2 - c) * w, d + (d2 - d) * w),
-    )
 
 
 @jit(inline=True)
