@@ -8,11 +8,12 @@
 A `FloorPlan` is one storey: straight walls with openings, flat floor and ceiling, a material each,
 the radio source and the start of a search. `FloorPlan.to_mesh` makes it a `trimesh` of sheets with
 a material a face, `FloorPlan.solid_segments` tells where it is solid at a height, and
-`floorplans.drawing` draws it. Lengths are in metres, z is the height above the floor.
+`floorplans.pictures.plan_view` draws it. Lengths are in metres, z is the height above the floor.
 """
 
 from floorplans.errors import PlanError
 from floorplans.georeference import GeoOrigin
+from floorplans.loading import builtin_names, load, loads, save
 from floorplans.materials import (
     MATERIAL_COLOURS,
     MATERIAL_EDITIONS,
@@ -23,8 +24,7 @@ from floorplans.materials import (
 from floorplans.mesh import SheetMaterial, WallMesh
 from floorplans.office import generate_office
 from floorplans.plan import FloorPlan
-from floorplans.toml_format import builtin_names, load, loads, save
-from floorplans.toml_writer import dumps
+from floorplans.toml.writer import dumps
 from floorplans.walls import Opening, OpeningKind, Panel, Wall, panels
 
 __all__ = [

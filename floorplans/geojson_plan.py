@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from floorplans.errors import PlanError
 from floorplans.georeference import GeoOrigin
+from floorplans.loading import from_data
 from floorplans.plan import FloorPlan
-from floorplans.toml_format import from_data
-from floorplans.toml_writer import dumps
+from floorplans.toml.writer import dumps
 from floorplans.walls import Wall
 
 MEMBER = "rssnav_plan"

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
-from floorplans.checks import check_plan
+from floorplans.checks.plan import check_plan
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import MATERIAL_COLOURS, OWN_COLOUR, Own, PlanMaterial, by_name
 from floorplans.mesh import WallMesh, build_mesh
-from floorplans.toml_writer import dumps
+from floorplans.toml.writer import dumps
 from floorplans.walls import Opening, Wall, solid_intervals
 
 __all__ = ["FloorPlan", "Opening", "UncheckedPlan", "Wall"]

@@ -6,18 +6,25 @@ Lengths are in metres, heights above the floor, angles in radians, gains linear 
 ends in ``_db`` or ``_dbm``.
 """
 
-from raytrace.antenna_patterns import PatternTable
-from raytrace.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
 from raytrace.errors import AntennaError, MapFileError, SceneError, SceneWarning
-from raytrace.estimate import CostEstimate, estimate_cost
 from raytrace.grid import Grid, TraceConfig
-from raytrace.materials import ABSORBER, PERFECT_CONDUCTOR, Dielectric, Layer, Layered, Material
-from raytrace.path_statistics import PathStatistics
-from raytrace.paths import ImpulseResponse, Paths
-from raytrace.radio_map import RadioMap
+from raytrace.radio.antenna_patterns import PatternTable
+from raytrace.radio.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
+from raytrace.radio.materials import (
+    ABSORBER,
+    PERFECT_CONDUCTOR,
+    Dielectric,
+    Layer,
+    Layered,
+    Material,
+)
+from raytrace.radio.transmitter import Transmitter
+from raytrace.results.path_statistics import PathStatistics
+from raytrace.results.paths import ImpulseResponse, Paths
+from raytrace.results.radio_map import RadioMap
 from raytrace.scene import Scene
+from raytrace.solver.cost_estimate import CostEstimate, estimate_cost
 from raytrace.trace import compute_radio_map, trace_paths
-from raytrace.transmitter import Transmitter
 
 __all__ = [
     "ABSORBER",

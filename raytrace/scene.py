@@ -8,13 +8,13 @@ import trimesh
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from raytrace.cells import CellComplex, cut_into_cells
-from raytrace.edges import LevelEdge, UprightEdge, find_level_edges, find_upright_edges
 from raytrace.errors import SceneError
-from raytrace.itu import DEFAULT_EDITION
+from raytrace.geometry.cells import CellComplex, cut_into_cells
+from raytrace.geometry.edges import LevelEdge, UprightEdge, find_level_edges, find_upright_edges
+from raytrace.geometry.sheets import read_sheets
 from raytrace.kernels.plan_view import PlanView
-from raytrace.materials import Material, Slab
-from raytrace.sheets import read_sheets
+from raytrace.radio.itu import DEFAULT_EDITION
+from raytrace.radio.materials import Material, Slab
 
 
 @dataclass(frozen=True, eq=False)

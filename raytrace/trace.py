@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.antennas import Antenna
-from raytrace.families import Family, all_families
 from raytrace.grid import Grid, TraceConfig
 from raytrace.kernels.tracing import new_record, new_sums
-from raytrace.layers import layers_of
-from raytrace.paths import Paths
-from raytrace.preparing import Tracing, prepare
-from raytrace.radio_map import RadioMap
+from raytrace.radio.antennas import Antenna
+from raytrace.radio.transmitter import Transmitter
+from raytrace.results.layers import layers_of
+from raytrace.results.paths import Paths
+from raytrace.results.radio_map import RadioMap
 from raytrace.scene import Scene
-from raytrace.summing import Progress, sum_paths
-from raytrace.transmitter import Transmitter
+from raytrace.solver.accumulate import Progress, sum_paths
+from raytrace.solver.path_classes import Family, all_families
+from raytrace.solver.setup import Tracing, prepare
 
 Floats = NDArray[np.float64]
 

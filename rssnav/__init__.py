@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rssnav.agents import Agent, DecisionProcess, LocationAgent, QLearning, RssAgent
     from rssnav.planning import Path, Solution, greedy_path, shortest_path, value_iteration
+    from rssnav.result_file import ResultFileError
     from rssnav.results import Schedule, TrainingResult
     from rssnav.states import ExactStates, Fluctuation, IntervalStates, ToleranceStates
-    from rssnav.store import ResultFileError
     from rssnav.training import TrainingInterrupted, train
     from rssnav.world import ACTION_NAMES, ACTIONS, GridWorld, WorldError
 
@@ -53,7 +53,7 @@ _HOMES = {
     "planning": ("Path", "Solution", "greedy_path", "shortest_path", "value_iteration"),
     "results": ("Schedule", "TrainingResult"),
     "states": ("ExactStates", "Fluctuation", "IntervalStates", "ToleranceStates"),
-    "store": ("ResultFileError",),
+    "result_file": ("ResultFileError",),
     "training": ("TrainingInterrupted", "train"),
     "world": ("ACTIONS", "ACTION_NAMES", "GridWorld", "WorldError"),
 }

@@ -19,7 +19,7 @@ from raytrace import (
     Transmitter,
     compute_radio_map,
 )
-from raytrace.materials import (
+from raytrace.radio.materials import (
     MATERIAL_EDITION,
     Dielectric,
     Layer,
@@ -27,9 +27,9 @@ from raytrace.materials import (
     Material,
     find_material,
 )
-from raytrace.store import FORMAT
+from raytrace.results.map_file import FORMAT
 from raytrace.trace import TRACER_VERSION
-from rssnav.map_cost import announcement
+from rssnav.cost_notice import announcement
 
 Progress = Callable[[int, int], None]
 Notice = Callable[[str], None]

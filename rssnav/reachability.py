@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from floorplans import FloorPlan
-from floorplans.inspection import Finding
+from floorplans.checks.inspection import Finding
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
 from rssnav.planning import shortest_path

@@ -139,14 +139,14 @@ class TrainingResult:
 
     def save(self, path: str | Path) -> None:
         """Write to an HDF5 file, replacing it only once it is complete."""
-        from rssnav.store import save_result
+        from rssnav.result_file import save_result
 
         save_result(self, path)
 
     @staticmethod
     def load(path: str | Path) -> TrainingResult:
-        """Read from an HDF5 file; raises :class:`~rssnav.store.ResultFileError`."""
-        from rssnav.store import load_result
+        """Read from an HDF5 file; raises :class:`~rssnav.result_file.ResultFileError`."""
+        from rssnav.result_file import load_result
 
         return load_result(path)
 

@@ -14,7 +14,7 @@ from reference import DIFFRACTION, REFLECTION, Edge, Facets, Found
 from scipy.special import fresnel
 
 from raytrace import Antenna, Transmitter
-from raytrace.materials import MATERIALS
+from raytrace.radio.materials import MATERIALS
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]

@@ -14,8 +14,8 @@ from scipy.special import fresnel
 
 import floorplans
 import raytrace
-from rssnav.figures import COLUMN_IN, STYLE
 from rssnav.maps import scene_of
+from rssnav.pictures.style import COLUMN_IN, STYLE
 
 plt.rcParams.update(STYLE)
 

@@ -11,9 +11,9 @@ import numpy as np
 
 import floorplans
 from raytrace import TraceConfig
-from rssnav.figures import PAGE_IN, STYLE
-from rssnav.map_picture import draw_radio_map
 from rssnav.maps import make_map
+from rssnav.pictures.radio_map import draw_radio_map
+from rssnav.pictures.style import PAGE_IN, STYLE
 
 plt.rcParams.update(STYLE)
 plan = floorplans.load("flat")

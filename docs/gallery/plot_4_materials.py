@@ -10,8 +10,8 @@ and on the polarisation.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from raytrace.materials import Slab
-from rssnav.figures import PAGE_IN, STYLE
+from raytrace.radio.materials import Slab
+from rssnav.pictures.style import PAGE_IN, STYLE
 
 plt.rcParams.update(STYLE)
 

@@ -11,8 +11,8 @@ import numpy as np
 
 import floorplans
 import raytrace
-from rssnav.figures import PAGE_IN, STYLE
 from rssnav.maps import scene_of
+from rssnav.pictures.style import PAGE_IN, STYLE
 
 plt.rcParams.update(STYLE)
 

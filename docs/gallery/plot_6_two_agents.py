@@ -11,9 +11,9 @@ import numpy as np
 
 import floorplans
 import rssnav
-from rssnav.figures import AGENT_COLOURS, PAGE_IN, STYLE, draw_flight
-from rssnav.map_picture import draw_radio_map
 from rssnav.maps import make_map
+from rssnav.pictures.radio_map import draw_radio_map
+from rssnav.pictures.style import AGENT_COLOURS, PAGE_IN, STYLE, draw_flight
 
 plt.rcParams.update(STYLE)
 

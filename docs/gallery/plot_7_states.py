@@ -11,8 +11,8 @@ import numpy as np
 
 import floorplans
 import rssnav
-from rssnav.figures import AGENT_COLOURS, PAGE_IN, STYLE, shade
 from rssnav.maps import make_map
+from rssnav.pictures.style import AGENT_COLOURS, PAGE_IN, STYLE, shade
 
 plt.rcParams.update(STYLE)
 

@@ -12,9 +12,9 @@ from matplotlib.animation import FuncAnimation
 import floorplans
 import rssnav
 from raytrace import TraceConfig
-from rssnav.figures import drawing
-from rssnav.flight_movie import Flight, FlightScene
 from rssnav.maps import make_map
+from rssnav.pictures.flight_movie import Flight, FlightScene
+from rssnav.pictures.style import drawing
 
 plan = floorplans.load("scenario2")
 radio_map = make_map(plan, config=TraceConfig(max_reflections=3, max_diffractions=1))

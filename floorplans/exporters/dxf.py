@@ -17,8 +17,8 @@ from ezdxf.document import Drawing
 from ezdxf.layouts.layout import Modelspace
 
 from floorplans.exporters.formats import ExportOptions, Files
+from floorplans.pictures.symbols import DOUBLE_DOOR_M, WallStrips
 from floorplans.plan import FloorPlan
-from floorplans.plan_shapes import DOUBLE_DOOR_M, WallStrips
 from floorplans.walls import Opening, OpeningKind, Wall
 
 LAYERS: dict[OpeningKind, str] = {"door": "DOOR", "window": "WINDOW", "passage": "DOOR-PASSAGE"}

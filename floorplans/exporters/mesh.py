@@ -14,8 +14,8 @@ from trimesh.exchange.stl import export_stl_ascii
 
 from floorplans.exporters.formats import ExportOptions, Files
 from floorplans.mesh import SheetMaterial, Triangles
+from floorplans.pictures.viewer_3d import add_triangles
 from floorplans.plan import FloorPlan
-from floorplans.viewer_3d import add_triangles
 
 
 class Sheet(NamedTuple):

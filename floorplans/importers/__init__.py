@@ -10,7 +10,7 @@ hangs doors and windows into them, finds the outline and gives a default to what
 tell. `Imported` holds the plan and says what was assumed and changed.
 """
 
-from floorplans.importers.assembling import assemble
+from floorplans.importers.assembly.assemble import assemble
 from floorplans.importers.draft import (
     Draft,
     ImportOptions,

@@ -1,7 +1,7 @@
 """What an importer reads from a file, before it is a plan.
 
 A reader of a format makes a `Draft` of what the file says and leaves out what it does not know;
-`floorplans.importers.assembling.assemble` makes a plan of it.
+`floorplans.importers.assembly.assemble.assemble` makes a plan of it.
 """
 
 from __future__ import annotations

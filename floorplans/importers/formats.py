@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 from floorplans.errors import PlanError
-from floorplans.importers.assembling import assemble
+from floorplans.importers.assembly.assemble import assemble
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported
 from floorplans.plan import FloorPlan
@@ -66,16 +66,16 @@ def _is_ifc(head: bytes) -> bool:
 
 
 FORMATS = (
-    Format("DXF drawing", (".dxf",), "dxf", "read_dxf", _is_dxf),
+    Format("DXF drawing", (".dxf",), "dxf.reader", "read_dxf", _is_dxf),
     Format(
-        "GeoJSON or IMDF", (".geojson", ".json", ".zip", ".imdf"), "geojson", "read_geojson",
+        "GeoJSON or IMDF", (".geojson", ".json", ".zip", ".imdf"), "geojson.reader", "read_geojson",
         _is_json,
     ),
     Format(
-        "ROS map_server map", (".yaml", ".yml", ".pgm", ".png"), "ros_map", "read_ros_map",
+        "ROS map_server map", (".yaml", ".yml", ".pgm", ".png"), "ros_map.reader", "read_ros_map",
         _is_ros_map,
     ),
-    Format("IFC model", (".ifc",), "ifc", "read_ifc", _is_ifc),
+    Format("IFC model", (".ifc",), "ifc.reader", "read_ifc", _is_ifc),
 )  # fmt: skip
 """All formats there are readers for."""
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 from floorplans.importers.draft import ImportOptions, LayerUse, Origin
 from floorplans.plan import FloorPlan
-from floorplans.repair import Change
-from floorplans.toml_writer import dumps
+from floorplans.repair.walls import Change
+from floorplans.toml.writer import dumps
 
 
 @dataclass(frozen=True)

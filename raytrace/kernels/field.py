@@ -58,10 +58,10 @@ class Radio(NamedTuple):
     slab_rows
         Rows of a slab in the tables that follow: steps of the cosine of incidence, and 2.
     slabs
-        (n_slabs * slab_rows, 4) see `raytrace.materials.slab_tables`.
+        (n_slabs * slab_rows, 4) see `raytrace.radio.materials.slab_tables`.
     through
-        (n_slabs * slab_rows, 4) see `raytrace.materials.transmission_tables`; empty where paths go
-        through no wall.
+        (n_slabs * slab_rows, 4) see `raytrace.radio.materials.transmission_tables`; empty where
+        paths go through no wall.
     highest
         (n_slabs * slab_rows,) largest reflected share of the power at a cosine of incidence or
         above.
@@ -76,8 +76,8 @@ class Radio(NamedTuple):
         are the same all around and polarised upright.
     patterns
         (n_elevations * n_azimuths, 4) of transmitter and receiver else: real and imaginary parts,
-        upright and level, row by row of an elevation (see `raytrace.antennas.antenna_tables`); of
-        no row where the above do.
+        upright and level, row by row of an elevation (see
+        `raytrace.radio.antennas.antenna_tables`); of no row where the above do.
     azimuths
         How many azimuths patterns have.
     """
@@ -327,7 +327,7 @@ def carried(
 def pattern_at(
     pattern: Floats, azimuths: int, x: Lanes, y: Lanes, sine: Lanes
 ) -> tuple[ComplexLanes, ComplexLanes]:
-    """Upright and level amplitudes towards directions (see `raytrace.antennas.antenna_tables`).
+    """Upright and level amplitudes towards directions (see `radio.antennas.antenna_tables`).
 
     Parameters
     ----------

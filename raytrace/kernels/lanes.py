@@ -3,7 +3,7 @@
 A kernel that takes `Lanes` evaluates eight paths at once, in the vector registers of the processor.
 In Python they are arrays of eight; the functions here say in NumPy what each of them means, and
 `raytrace.kernels.vectors` tells numba how to compile them, and the operators, to single vector
-instructions. `tests/raytrace/test_lanes.py` holds one to the other.
+instructions. `tests/raytrace/kernels/test_lanes.py` holds one to the other.
 """
 
 from typing import Any

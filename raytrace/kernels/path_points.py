@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from raytrace.kernels.beams import Hits, Tree
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import EDGE_OF_STOREY
+from raytrace.kernels.horizontal_edges import RIM_LOOKS, Rim, RimLegsIn, new_work, unfold_over_rim
 from raytrace.kernels.lanes import lane, lanes_of
-from raytrace.kernels.level_edges import RIM_LOOKS, Rim, RimLegsIn, new_work, unfold_over_rim
 from raytrace.kernels.plan_view import Floats, PlanView, folded, material_at
 from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import Record, Trace
@@ -27,7 +27,7 @@ from raytrace.kernels.unfolding import (
     new_leg,
     unfold,
 )
-from raytrace.kernels.upright_edges import Edge, LegsIn
+from raytrace.kernels.vertical_edges import Edge, LegsIn
 
 NOTHING, REFLECTION, DIFFRACTION, TRANSMISSION = 0, 1, 2, 3
 """Interactions, as in `Paths.interactions`."""

@@ -10,14 +10,14 @@ import typer
 
 import floorplans
 from raytrace import TraceConfig, Transmitter, trace_paths
-from raytrace.materials import MATERIAL_EDITION
-from raytrace.summing import default_threads
+from raytrace.radio.materials import MATERIAL_EDITION
+from raytrace.solver.accumulate import default_threads
 from raytrace.trace import TRACER_VERSION
 from rssnav import GridWorld, LocationAgent, train
 from rssnav.cli.console import note, print_json, print_pairs
 from rssnav.cli.failures import COULD_NOT, complain
-from rssnav.cli.kernel_cache import KernelCache, learning_cache, tracer_cache
 from rssnav.cli.options import Json, examples
+from rssnav.kernel_cache import KernelCache, learning_cache, tracer_cache
 from rssnav.maps import make_map, scene_of
 
 LIBRARIES = ("numpy", "numba", "scipy", "shapely", "trimesh", "h5py", "matplotlib", "typer")

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rssnav.cli.console import note, print_table, stage_progress
-from rssnav.cli.kernel_cache import learning_cache, tracer_cache
 from rssnav.cli.options import Style, Threads, examples
+from rssnav.kernel_cache import learning_cache, tracer_cache
 
 if TYPE_CHECKING:
-    from rssnav.experiments import Paper
+    from rssnav.experiments.paper import Paper
 
 Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Where everything is, or will be.")]
 RESULTS = Path("results")
@@ -81,8 +81,8 @@ def run_experiments(
         if runs is not None or not resume:
             raise typer.BadParameter("--runs and --no-resume belong to the paper")
         return _run_study(what, out, quick, seed, style, threads)
-    from rssnav.experiments import run_paper
-    from rssnav.figures import chosen_style
+    from rssnav.experiments.paper import run_paper
+    from rssnav.pictures.style import chosen_style
 
     try:
         with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
@@ -107,8 +107,8 @@ def run_experiments(
 def _run_study(
     what: What, out: Path, quick: bool, seed: int, style: str | None, threads: int | None
 ) -> None:
-    from rssnav.experiments import comparison, noise, sensitivity
-    from rssnav.figures import chosen_style
+    from rssnav.experiments.studies import comparison, noise, sensitivity
+    from rssnav.pictures.style import chosen_style
 
     study = {What.SENSITIVITY: sensitivity, What.NOISE: noise, What.COMPARISON: comparison}[what]
     with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
@@ -119,8 +119,8 @@ def _run_study(
 
 def remake_report(out: Out = RESULTS, style: Style = None, threads: Threads = None) -> None:
     """Make figures, tables and report again from the maps and trainings of an earlier run."""
-    from rssnav.experiments import report_again
-    from rssnav.figures import chosen_style
+    from rssnav.experiments.paper import report_again
+    from rssnav.pictures.style import chosen_style
 
     with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
         paper = report_again(out, threads=threads, progress=show, notice=note)

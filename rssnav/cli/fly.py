@@ -16,7 +16,7 @@ from rssnav.cli.options import Json, Plan, Style, check_suffix, examples
 from rssnav.maps import require_map_for
 
 if TYPE_CHECKING:
-    from rssnav.flight_movie import Flight
+    from rssnav.pictures.flight_movie import Flight
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -65,8 +65,8 @@ def fly(
     as_json: Json = False,
 ) -> None:
     """Show how a trained UAV flies: its way over the map, and the RSS it reads, step by step."""
-    from rssnav.figures import chosen_style
-    from rssnav.flight_movie import SUFFIXES, MovieError, save_flight_movie
+    from rssnav.pictures.flight_movie import SUFFIXES, MovieError, save_flight_movie
+    from rssnav.pictures.style import chosen_style
 
     check_suffix(output, SUFFIXES, "--output")
     loaded = floorplans.load(plan)

@@ -114,7 +114,7 @@ def _check_style(style: str | None) -> str | None:
     """Refuse a style that matplotlib does not know, as wrong usage."""
     if style is None:
         return None
-    from rssnav.figures import check_style
+    from rssnav.pictures.style import check_style
 
     try:
         check_style(style)

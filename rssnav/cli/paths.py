@@ -14,7 +14,6 @@ import floorplans
 from floorplans import FloorPlan
 from raytrace import Paths, PathStatistics, SceneError, TraceConfig, Transmitter, trace_paths
 from rssnav.cli.console import COMPILING, note, print_json, print_pairs, print_table
-from rssnav.cli.kernel_cache import tracer_cache
 from rssnav.cli.options import (
     PICTURE_SUFFIXES,
     Diffractions,
@@ -27,6 +26,7 @@ from rssnav.cli.options import (
     check_suffix,
     examples,
 )
+from rssnav.kernel_cache import tracer_cache
 from rssnav.maps import FREQUENCY_HZ, HEIGHT_M, POWER_DBM, scene_of
 
 Position = tuple[float, float, float]
@@ -143,8 +143,8 @@ def _chosen(paths: Paths, only: str, top: int) -> Paths:
 
 def _draw(plan: FloorPlan, paths: Paths, only: str, picture: Path, style: str | None) -> None:
     """Draw paths into a file; a note says so where there is none."""
-    from rssnav.figures import chosen_style
-    from rssnav.path_picture import save_paths_picture
+    from rssnav.pictures.paths import save_paths_picture
+    from rssnav.pictures.style import chosen_style
 
     if not len(paths):
         note(f"no path to draw; {picture} is not written")

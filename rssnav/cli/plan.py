@@ -113,9 +113,9 @@ def show(
 def _draw(
     plan: FloorPlan, output: Path, view: Literal["2d", "3d"] | None, style: str | None
 ) -> None:
-    from floorplans.drawing import save_plan_picture
-    from floorplans.viewer_3d import plan_scene, save_scene
-    from rssnav.figures import chosen_style, drawing
+    from floorplans.pictures.plan_view import save_plan_picture
+    from floorplans.pictures.viewer_3d import plan_scene, save_scene
+    from rssnav.pictures.style import chosen_style, drawing
 
     with whole_file(output) as beside, chosen_style(style), drawing():
         if output.suffix.lower() in SOLID_SUFFIXES:
@@ -130,8 +130,8 @@ def _draw_walls_in_3d(plan: FloorPlan, path: Path) -> None:
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d import Axes3D
 
-    from floorplans.drawing import draw_plan_3d
-    from rssnav.figures import DPI, PAGE_IN
+    from floorplans.pictures.plan_view import draw_plan_3d
+    from rssnav.pictures.style import DPI, PAGE_IN
 
     figure = Figure(figsize=(PAGE_IN, 4.8))
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")

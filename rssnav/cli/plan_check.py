@@ -12,11 +12,11 @@ from rich.table import Table
 from rich.text import Text
 
 from floorplans import FloorPlan, PlanError
-from floorplans.checks import faults, number_faults
-from floorplans.inspection import Finding, inspect
-from floorplans.mending import Mended, mend
-from floorplans.repair import Change
-from floorplans.toml_format import Unchecked, builtin_names, loads_unchecked, read_text
+from floorplans.checks.inspection import Finding, inspect
+from floorplans.checks.plan import faults, number_faults
+from floorplans.loading import Unchecked, builtin_names, loads_unchecked, read_text
+from floorplans.repair.plan import Mended, mend
+from floorplans.repair.walls import Change
 from rssnav.cli.console import note, print_json, print_table
 from rssnav.cli.options import Json, Plan, check_suffix, examples
 from rssnav.cli.plan_facts import facts_of, print_facts

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from floorplans.importers import Imported, ImportOptions, import_plan
-from floorplans.repair import Change
+from floorplans.repair.walls import Change
 from rssnav.cli.console import print_json, print_table
 from rssnav.cli.options import Json, check_suffix, examples
 from rssnav.cli.plan_facts import facts_of, print_facts

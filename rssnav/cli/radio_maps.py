@@ -11,7 +11,6 @@ import floorplans
 from floorplans import FloorPlan
 from raytrace import RadioMap, TraceConfig
 from rssnav.cli.console import note, print_json, print_pairs, stage_progress
-from rssnav.cli.kernel_cache import tracer_cache
 from rssnav.cli.options import (
     PICTURE_SUFFIXES,
     CellSize,
@@ -33,6 +32,7 @@ from rssnav.cli.options import (
     check_suffix,
     examples,
 )
+from rssnav.kernel_cache import tracer_cache
 from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM, make_map
 
 SCENARIOS = ("scenario1", "scenario2")
@@ -149,8 +149,8 @@ def _is_older(picture: Path, map_file: Path) -> bool:
 
 
 def _draw(plan: FloorPlan, radio_map: RadioMap, picture: Path, style: str | None) -> None:
-    from rssnav.figures import chosen_style
-    from rssnav.map_picture import save_map_picture
+    from rssnav.pictures.radio_map import save_map_picture
+    from rssnav.pictures.style import chosen_style
 
     with chosen_style(style):
         save_map_picture(plan, radio_map, picture)

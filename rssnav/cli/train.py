@@ -28,8 +28,8 @@ from rssnav import (
     train,
 )
 from rssnav.cli.console import note, one_progress, print_json, print_pairs
-from rssnav.cli.kernel_cache import learning_cache
 from rssnav.cli.options import Json, Plan, Threads, examples
+from rssnav.kernel_cache import learning_cache
 from rssnav.maps import Progress, require_map_for
 from rssnav.states import StateRule
 

@@ -7,7 +7,7 @@ import panel as pn
 from numpy.typing import NDArray
 
 from floorplans import FloorPlan
-from floorplans.viewer_3d import add_lines, add_points, plan_scene, scene_html
+from floorplans.pictures.viewer_3d import add_lines, add_points, plan_scene, scene_html
 from rssnav.explorer.map_figure import path_colours
 from rssnav.explorer.session import Session
 from rssnav.explorer.styles import WIDGETS, decibels, pairs, problem, thousands

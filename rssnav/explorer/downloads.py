@@ -12,7 +12,7 @@ import floorplans
 from rssnav.explorer.session import Session
 from rssnav.explorer.styles import WIDGETS
 from rssnav.explorer.tracing import TracedMap
-from rssnav.map_picture import save_map_picture
+from rssnav.pictures.radio_map import save_map_picture
 
 
 def plan_file(session: Session) -> bytes:

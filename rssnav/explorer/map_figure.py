@@ -28,10 +28,10 @@ from numpy.typing import NDArray
 from shapely import get_coordinates
 
 from floorplans import FloorPlan
-from floorplans.plan_legend import SOURCE, START
+from floorplans.pictures.legend import SOURCE, START
 from raytrace import RadioMap
-from rssnav.figures import AGENT_COLOURS, INK
-from rssnav.map_picture import FREE_WALL, NO_PATH
+from rssnav.pictures.radio_map import FREE_WALL, NO_PATH
+from rssnav.pictures.style import AGENT_COLOURS, INK
 
 FONT = "Inter, system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 FLOOR = "#fbfaf7"

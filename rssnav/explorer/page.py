@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import panel as pn
 
-from rssnav.cli.kernel_cache import tracer_cache
 from rssnav.explorer.cell_panel import CellPanel, page_3d, strongest
 from rssnav.explorer.downloads import Downloads
 from rssnav.explorer.flight_player import FlightPlayer
@@ -25,6 +24,7 @@ from rssnav.explorer.styles import (
 )
 from rssnav.explorer.training import Flight
 from rssnav.explorer.training_panel import TrainingPanel
+from rssnav.kernel_cache import tracer_cache
 
 LOOK_MS = 100
 CELL_TAB, TRAINING_TAB = 1, 2

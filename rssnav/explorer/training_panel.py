@@ -15,7 +15,7 @@ from rssnav.explorer.map_figure import FONT
 from rssnav.explorer.session import Session, suggested_goal_dbm
 from rssnav.explorer.styles import WIDGETS, pairs, problem
 from rssnav.explorer.training import MAX_EPISODES, LiveTraining, TrainingSettings
-from rssnav.figures import AGENT_COLOURS, FAINT, INK
+from rssnav.pictures.style import AGENT_COLOURS, FAINT, INK
 
 MOST_POINTS = 2000
 SMOOTHED = 25

@@ -90,7 +90,7 @@ def _imported(suffix: str, content: bytes, limits: Limits) -> str:
     with TemporaryDirectory(prefix="rssnav-") as folder:
         file, plan = Path(folder) / f"plan{suffix}", Path(folder) / "plan.toml"
         file.write_bytes(content)
-        command = [sys.executable, "-m", "rssnav.explorer.reading"]
+        command = [sys.executable, "-m", "rssnav.explorer.import_worker"]
         try:
             done = subprocess.run(
                 [*command, str(file), str(plan), str(limits.reading_bytes)],

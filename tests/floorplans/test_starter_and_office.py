@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import floorplans
-from floorplans.drawing import save_plan_picture
+from floorplans.pictures.plan_view import save_plan_picture
 from floorplans.starter import starter_plan
 
 

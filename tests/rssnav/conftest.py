@@ -1,8 +1,9 @@
 import pytest
 from small_worlds import log_distance_map, room_plan, world_of
 
-from rssnav.experiments import sensitivity, studies
-from rssnav.experiments.data import Scenario
+from rssnav.experiments.paper.data import Scenario
+from rssnav.experiments.studies import common as studies
+from rssnav.experiments.studies import sensitivity
 
 
 @pytest.fixture

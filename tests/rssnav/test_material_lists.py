@@ -9,8 +9,8 @@ import pytest
 import floorplans
 from floorplans import MaterialLayer, PlanMaterial
 from raytrace import SceneError, TraceConfig
-from raytrace.itu import TABLES
-from raytrace.materials import MATERIAL_NAMES, Dielectric, Layer, Layered
+from raytrace.radio.itu import TABLES
+from raytrace.radio.materials import MATERIAL_NAMES, Dielectric, Layer, Layered
 from rssnav.maps import make_map, scene_of
 
 BOARD = PlanMaterial("board", 2.1, c=0.01, d=0.5)

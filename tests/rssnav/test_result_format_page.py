@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import h5py
 import pytest
+from documents import ROOT
 from small_worlds import world_of
 
 from rssnav import LocationAgent, train
 
-PAGE = (Path(__file__).parents[2] / "docs" / "result_format.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "result_format.md").read_text(encoding="utf-8")
 ROW = re.compile(r"^\| `([a-z_/]+)` \| \((.*?)\) \| (\S+) \|", re.MULTILINE)
 
 

@@ -14,7 +14,7 @@ from rssnav import (
     TrainingResult,
     train,
 )
-from rssnav.store import ResultFileError
+from rssnav.result_file import ResultFileError
 
 
 def assert_same(one, other):

@@ -1,0 +1,241 @@
+"""What is wrong or doubtful about a plan: all of it, each with its place.
+
+Errors make a plan unusable and are those of `floorplans.checks.plan`; warnings are what a drawing
+or a slip of the hand often leaves and nobody means: walls that almost meet, slivers, a wall drawn
+twice, a room without a door.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import dist
+from typing import Literal
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, MultiLineString, Point, Polygon
+
+from floorplans.checks.plan import building_faults, number_faults
+from floorplans.errors import PlanError, format_place
+from floorplans.loading import Unchecked
+from floorplans.plan import UncheckedPlan
+from floorplans.walls import TOLERANCE_M, Wall
+from floorplans.walls import Point as PlanPoint
+
+GAP_M = 0.05
+"""A free wall end this near to another wall's body is thought to be meant to meet it [m]."""
+
+SLIVER_M = 0.05
+"""Walls shorter than this, and regions narrower, are slivers [m]."""
+
+ROOM_WALL_M = 1.5
+"""Walls from this height on part rooms [m]."""
+
+SOURCE_GAP_M = 0.1
+START_GAP_M = 0.2
+"""Source and start should be this far off walls [m]."""
+
+_PARALLEL_SINE = 0.03
+_SIDE_BY_SIDE_M = 0.2
+_JAMB_M = 0.01
+
+Severity = Literal["error", "warning"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something about a plan that its author should see.
+
+    Attributes
+    ----------
+    severity : {"error", "warning"}
+        An error makes the plan unusable.
+    kind : str
+        In short, the same for all findings of a kind.
+    text : str
+        What it is, where in the file, and what would be right.
+    at : (float, float) or None
+        Where in the building, (x, y) [m]; None where it is in no place.
+    """
+
+    severity: Severity
+    kind: str
+    text: str
+    at: PlanPoint | None
+
+
+@dataclass(frozen=True)
+class _Walls:
+    """Walls with their centre lines and what the file calls them."""
+
+    walls: tuple[Wall, ...]
+    lines: NDArray[np.object_]
+    names: tuple[str, ...]
+
+
+def inspect(file: Unchecked) -> tuple[Finding, ...]:
+    """Find everything wrong or doubtful about a plan.
+
+    Parameters
+    ----------
+    file : Unchecked
+        The plan, and how its walls are numbered in its file.
+
+    Returns
+    -------
+    tuple of Finding
+        Errors first.
+    """
+    wrong_numbers = [_error(fault, file) for fault in number_faults(file.plan)]
+    if wrong_numbers:
+        return tuple(wrong_numbers)
+    return (*(_error(fault, file) for fault in building_faults(file.plan)), *_warnings(file))
+
+
+def _error(fault: PlanError, file: Unchecked) -> Finding:
+    place = file.place_in_file(fault.place)
+    text = str(PlanError(fault.problem, place, fault.value))
+    return Finding("error", str(place[0]) if place else "plan", text, fault.at)
+
+
+def _warnings(file: Unchecked) -> Iterator[Finding]:
+    plan = file.plan
+    lines = np.array([LineString([w.start, w.end]) for w in plan.walls], dtype=np.object_)
+    places = (file.place_in_file(("walls", index)) for index in range(len(lines)))
+    walls = _Walls(plan.walls, lines, tuple(format_place(place) for place in places))
+    yield from _walls_that_almost_meet(walls)
+    yield from _walls_side_by_side(walls)
+    yield from _short_walls(walls)
+    yield from _openings_run_into(walls)
+    yield from _narrow_and_shut_rooms(plan)
+    yield from _near_walls(plan)
+
+
+def _walls_that_almost_meet(them: _Walls) -> Iterator[Finding]:
+    """Yield free wall ends that stop a little short of another wall, or in its thickness."""
+    tree = shapely.STRtree(them.lines)
+    reach = np.array([wall.thickness_m / 2 + GAP_M for wall in them.walls])
+    for index, wall in enumerate(them.walls):
+        for end in (wall.start, wall.end):
+            near = tree.query(Point(end), predicate="dwithin", distance=float(reach.max()))
+            others = near[near != index]
+            gaps = shapely.distance(them.lines[others], Point(end))
+            meant = gaps <= reach[others]
+            if meant.any() and gaps.min() > TOLERANCE_M:
+                k = int(np.argmin(np.where(meant, gaps, np.inf)))
+                yield Finding(
+                    "warning",
+                    "almost meets",
+                    f"an end of {them.names[index]} is {gaps[k]:.4g} m from "
+                    f"{them.names[int(others[k])]}, and waves pass between: let them meet",
+                    end,
+                )
+
+
+def _walls_side_by_side(them: _Walls) -> Iterator[Finding]:
+    """Yield walls that run beside each other within their thickness: one wall drawn twice."""
+    tree = shapely.STRtree(them.lines)
+    reach = max((wall.thickness_m for wall in them.walls), default=0.0)
+    for first, second in tree.query(them.lines, predicate="dwithin", distance=reach).T:
+        if first >= second:
+            continue
+        overlap = _overlap(them.walls[first], them.walls[second])
+        if overlap is not None and overlap[1] > TOLERANCE_M:
+            length, apart, at = overlap
+            yield Finding(
+                "warning",
+                "side by side",
+                f"{them.names[second]} runs beside {them.names[first]} for {length:.4g} m, "
+                f"{apart:.4g} m off: one wall is one sheet on its centre line",
+                at,
+            )
+
+
+def _overlap(a: Wall, b: Wall) -> tuple[float, float, PlanPoint] | None:
+    """Length, distance and middle of the stretch on which wall b runs within wall a's body."""
+    along = (np.array(a.end) - a.start) / a.length_m
+    across = np.array([-along[1], along[0]])
+    ends = np.array([b.start, b.end]) - a.start
+    if abs((ends[1] - ends[0]) @ across) > _PARALLEL_SINE * b.length_m:
+        return None
+    s = np.clip(np.sort(ends @ along), 0.0, a.length_m)
+    apart = float(np.abs(ends @ across).mean())
+    if s[1] - s[0] < _SIDE_BY_SIDE_M or apart > (a.thickness_m + b.thickness_m) / 2:
+        return None
+    return float(s[1] - s[0]), apart, a.point_at(float(s.mean()))
+
+
+def _short_walls(them: _Walls) -> Iterator[Finding]:
+    for wall, name in zip(them.walls, them.names, strict=True):
+        if wall.length_m < SLIVER_M:
+            text = f"{name} is only {wall.length_m:.4g} m long: drop it and let the others meet"
+            yield Finding("warning", "sliver", text, wall.start)
+
+
+def _openings_run_into(them: _Walls) -> Iterator[Finding]:
+    """Yield ends of walls in an opening of another wall."""
+    ends = [end for wall in them.walls for end in (wall.start, wall.end)]
+    tree = shapely.STRtree(np.array([Point(end) for end in ends], dtype=np.object_))
+    for name, wall in zip(them.names, them.walls, strict=True):
+        for opening in wall.openings:
+            near, far = wall.point_at(opening.offset_m), wall.point_at(opening.end_m)
+            line = LineString([near, far])
+            for k in tree.query(line, predicate="dwithin", distance=TOLERANCE_M):
+                if min(dist(ends[k], near), dist(ends[k], far)) > _JAMB_M:
+                    yield Finding(
+                        "warning",
+                        "wall in opening",
+                        f"{them.names[int(k) // 2]} ends in a {opening.kind} of {name}: move one "
+                        "of them",
+                        ends[k],
+                    )
+
+
+def _narrow_and_shut_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
+    """Yield regions that walls leave too narrow for anything, and rooms no door leads to."""
+    parting = [wall for wall in plan.walls if wall.height_m >= min(ROOM_WALL_M, plan.height_m)]
+    lines = [LineString([wall.start, wall.end]) for wall in parting]
+    noded = shapely.union_all(np.array(lines, dtype=np.object_))
+    doors = [
+        Point(wall.point_at(opening.offset_m + opening.width_m / 2))
+        for wall in parting
+        for opening in wall.openings
+        if opening.kind != "window"
+    ]
+    tree = shapely.STRtree(np.array(doors, dtype=np.object_))
+    for room in shapely.get_parts(shapely.polygonize(shapely.get_parts(noded))):
+        inner = room.representative_point()
+        at = (float(inner.x), float(inner.y))
+        if not plan.outline.contains(inner):
+            continue
+        if room.buffer(-SLIVER_M / 2).is_empty:
+            text = f"a sliver of {room.area:.3g} m² between walls; make one wall of them"
+            yield Finding("warning", "sliver", text, at)
+        elif not len(tree.query(room, predicate="dwithin", distance=1e-4)):
+            yield Finding("warning", "no door", _shut(room), at)
+
+
+def _shut(room: Polygon) -> str:
+    x_min, y_min, x_max, y_max = room.bounds
+    return (
+        f"no door or passage leads to the room of {room.area:.4g} m² from ({x_min:.4g}, "
+        f"{y_min:.4g}) to ({x_max:.4g}, {y_max:.4g})"
+    )
+
+
+def _near_walls(plan: UncheckedPlan) -> Iterator[Finding]:
+    """Yield a source or start that is so near a wall that the wall is not what it was."""
+    x, y, z = plan.source
+    for name, point, height_m, least in (
+        ("source", (x, y), z, SOURCE_GAP_M),
+        ("start", plan.start, plan.height_m / 2, START_GAP_M),
+    ):
+        if not 0 <= height_m <= plan.height_m:
+            continue
+        walls = MultiLineString(list(plan.solid_segments(height_m)))
+        gap = Point(point).distance(walls)
+        if TOLERANCE_M <= gap < least:
+            text = f"the {name} is {gap:.4g} m from a wall; better keep {least:g} m off"
+            yield Finding("warning", f"{name} near wall", text, point)

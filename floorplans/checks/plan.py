@@ -1,0 +1,237 @@
+"""Checks of a whole plan: everything that makes it unusable."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from math import isfinite
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, MultiLineString, Point, Polygon
+from shapely.geometry.base import BaseGeometry
+from shapely.strtree import STRtree
+
+from floorplans.checks.walls import check_positive, check_wall
+from floorplans.errors import Place, PlanError
+from floorplans.georeference import check_origin
+from floorplans.materials import check_materials, check_slab
+from floorplans.walls import TOLERANCE_M, Wall, closed_intervals
+
+if TYPE_CHECKING:
+    from floorplans.plan import UncheckedPlan
+
+
+def check_plan(plan: UncheckedPlan) -> None:
+    """Raise `PlanError` unless the plan describes a closed storey a search can be run in."""
+    for fault in faults(plan):
+        raise fault
+
+
+def faults(plan: UncheckedPlan) -> Iterator[PlanError]:
+    """Yield what makes a plan unusable: wrong numbers and names, or else a wrong building."""
+    wrong_numbers = False
+    for fault in number_faults(plan):
+        wrong_numbers = True
+        yield fault
+    if not wrong_numbers:
+        yield from building_faults(plan)
+
+
+def building_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
+    """Yield what is wrong about a building whose numbers are in order."""
+    yield from _walls_outside(plan)
+    yield from _double_walls(plan.walls)
+    yield from _open_edges(plan)
+    yield from _caught(lambda: _check_source(plan))
+    yield from _caught(lambda: _check_start(plan))
+
+
+def number_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
+    """Yield numbers and names that are wrong by themselves."""
+    yield from _caught(lambda: _check_name(plan.name))
+    yield from _caught(lambda: check_materials(plan.materials, plan.material_edition))
+    yield from _caught(lambda: _check_slabs(plan))
+    yield from _caught(lambda: _check_outline(plan.outline))
+    for index, wall in enumerate(plan.walls):
+        place: Place = ("walls", index)
+        for fault in _caught(partial(check_wall, wall, plan.height_m, plan.own_materials, place)):
+            yield PlanError(fault.problem, fault.place, fault.value, at=_middle(wall))
+    origin = plan.origin
+    if origin is not None:
+        yield from _caught(lambda: check_origin(origin))
+
+
+def _caught(check: Callable[[], None]) -> Iterator[PlanError]:
+    """Yield the error that a check raises."""
+    try:
+        check()
+    except PlanError as fault:
+        yield fault
+
+
+def _middle(wall: Wall) -> tuple[float, float] | None:
+    """Point half-way along a wall, None where its ends are no numbers."""
+    x, y = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
+    return (x, y) if isfinite(x) and isfinite(y) else None
+
+
+def _check_name(name: str) -> None:
+    if not (name and name.isprintable()):
+        raise PlanError("expected one line of printable text", ("name",), name)
+
+
+def _check_slabs(plan: UncheckedPlan) -> None:
+    check_positive(plan.height_m, ("height_m",))
+    own = plan.own_materials
+    check_slab(plan.floor_material, plan.floor_thickness_m, own, (), "floor_")
+    check_slab(plan.ceiling_material, plan.ceiling_thickness_m, own, (), "ceiling_")
+    check_positive(plan.floor_thickness_m, ("floor_thickness_m",))
+    check_positive(plan.ceiling_thickness_m, ("ceiling_thickness_m",))
+
+
+def _check_outline(outline: Polygon) -> None:
+    place: Place = ("outline",)
+    if outline.has_z:
+        raise PlanError("the outline has heights; give points (x, y)", place)
+    if not all(isfinite(number) for number in shapely.get_coordinates(outline).flat):
+        raise PlanError("expected finite numbers [m]", place)
+    if not outline.is_valid:
+        reason = shapely.is_valid_reason(outline)
+        raise PlanError(
+            f"the ring is not a simple polygon: {reason}; no edge may cross or repeat another",
+            place,
+        )
+    if not outline.area > 0:
+        raise PlanError("the outline has no area; give at least three corners", place)
+
+
+def _walls_outside(plan: UncheckedPlan) -> Iterator[PlanError]:
+    room = plan.outline.buffer(TOLERANCE_M)
+    shapely.prepare(room)
+    for index, line in enumerate(_centre_lines(plan.walls)):
+        if not room.covers(line):
+            outside = _longest(line.difference(room))
+            yield PlanError(
+                f"the wall leaves the outline from {_stretch(outside)}; shorten it or widen the "
+                "outline",
+                ("walls", index),
+                at=_first_point(outside),
+            )
+
+
+def _double_walls(walls: tuple[Wall, ...]) -> Iterator[PlanError]:
+    lines = _centre_lines(walls)
+    for first, second in STRtree(_array(lines)).query(_array(lines), predicate="intersects").T:
+        if first < second:
+            shared = lines[first].intersection(lines[second])
+            if shared.length > TOLERANCE_M:
+                double = _longest(shared)
+                yield PlanError(
+                    f"the wall runs along another wall from {_stretch(double)}; "
+                    "one wall is one sheet: remove the stretch from one of them",
+                    ("walls", int(second)),
+                    at=_first_point(double),
+                )
+
+
+def _open_edges(plan: UncheckedPlan) -> Iterator[PlanError]:
+    """Yield where walls without unfilled openings, floor to ceiling, do not cover the outline."""
+    edge = plan.outline.boundary
+    full = [wall for wall in plan.walls if wall.height_m > plan.height_m - TOLERANCE_M]
+    near = np.flatnonzero(shapely.dwithin(_array(_centre_lines(full)), edge, 2 * TOLERANCE_M))
+    closed = [
+        LineString([full[k].point_at(low), full[k].point_at(high)])
+        for k in near
+        for low, high in closed_intervals(full[k])
+    ]
+    cover = shapely.union_all(closed).buffer(2 * TOLERANCE_M)
+    for ring in (plan.outline.exterior, *plan.outline.interiors):
+        for gap in _lines(ring.difference(cover)):
+            if gap.length > 10 * TOLERANCE_M:
+                side = LineString(gap.coords[:2])
+                yield PlanError(
+                    f"the outline is open from {_stretch(side)}; put a wall from floor to ceiling "
+                    "there, and give a door or window in it a material",
+                    ("outline",),
+                    at=_first_point(side),
+                )
+
+
+def _check_source(plan: UncheckedPlan) -> None:
+    place: Place = ("source",)
+    x, y, z = plan.source
+    if not 0 < z < plan.height_m:
+        raise PlanError(
+            f"the source is not between floor and ceiling; expected a height above 0 and below "
+            f"{plan.height_m:g} [m]",
+            place,
+            plan.source,
+            at=(x, y),
+        )
+    _check_inside(plan, (x, y), "source", plan.source)
+    if _in_wall(plan, (x, y), z):
+        raise PlanError(
+            "the source is in a wall; move it into a room", place, plan.source, at=(x, y)
+        )
+
+
+def _check_start(plan: UncheckedPlan) -> None:
+    """Raise for a start outside, or with a wall at every height; it may stand in a doorway."""
+    _check_inside(plan, plan.start, "start", plan.start)
+    if all(_in_wall(plan, plan.start, height_m) for height_m in plan.layer_heights()):
+        raise PlanError(
+            "the start is in a wall; move it into a room", ("start",), plan.start, at=plan.start
+        )
+
+
+def _check_inside(plan: UncheckedPlan, point: tuple[float, float], key: str, value: object) -> None:
+    if not plan.outline.covers(Point(point)):
+        x_min, y_min, x_max, y_max = plan.bounds
+        raise PlanError(
+            f"the {key} is outside the outline, which reaches from ({x_min:g}, {y_min:g}) to "
+            f"({x_max:g}, {y_max:g}); move it into a room",
+            (key,),
+            value,
+            at=point,
+        )
+
+
+def _in_wall(plan: UncheckedPlan, point: tuple[float, float], height_m: float) -> bool:
+    walls = MultiLineString(list(plan.solid_segments(height_m)))
+    return Point(point).distance(walls) < TOLERANCE_M
+
+
+def _centre_lines(walls: Sequence[Wall]) -> list[LineString]:
+    return [LineString([wall.start, wall.end]) for wall in walls]
+
+
+def _array(lines: list[LineString]) -> NDArray[np.object_]:
+    return np.array(lines, dtype=np.object_)  # of this type also when there is none
+
+
+def _lines(geometry: BaseGeometry) -> list[LineString]:
+    """Straight or bent lines of a geometry, joined where one goes on from another."""
+    merged = shapely.line_merge(geometry)
+    parts = shapely.get_parts(merged)
+    return [part for part in parts if isinstance(part, LineString) and not part.is_empty]
+
+
+def _longest(geometry: BaseGeometry) -> LineString:
+    return max(_lines(geometry), key=lambda line: line.length)
+
+
+def _stretch(line: LineString) -> str:
+    """Say "(x, y) to (x, y)" of the ends of a line, rounded to 0.1 mm."""
+    return " to ".join(f"({_tidy(x)}, {_tidy(y)})" for x, y in (line.coords[0], line.coords[-1]))
+
+
+def _first_point(line: LineString) -> tuple[float, float]:
+    x, y = line.coords[0]
+    return x, y
+
+
+def _tidy(number: float) -> str:
+    return f"{round(number, 4) + 0.0:g}"

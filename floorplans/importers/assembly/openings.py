@@ -1,0 +1,284 @@
+"""Doors and windows, hung into the walls they stand in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import hypot, radians, sin
+
+import shapely
+from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from floorplans.importers.draft import RawOpening
+from floorplans.repair.moves import (
+    DECIMALS,
+    Change,
+    along_across,
+    direction,
+    tidy_point,
+    wall_lines,
+)
+from floorplans.walls import TOLERANCE_M, Opening, Wall
+from floorplans.walls import Point as Point2
+
+DOOR_HEAD_M = 2.1
+WINDOW_SILL_M = 0.9
+WINDOW_HEAD_M = 2.1
+DOOR_MATERIAL, DOOR_THICKNESS_M = "wood", 0.04
+WINDOW_MATERIAL, WINDOW_THICKNESS_M = "glass", 0.02
+
+_MAX_SINE = sin(radians(20.0))
+_BESIDE_M = 0.3
+"""How far beside its wall's body the middle of an opening may be drawn [m]."""
+_FRAME_M = 0.4
+"""How far a gap may go on beyond an opening at each side [m]."""
+_TOUCH_M = 0.05
+_JOIN_M = 0.15
+"""Openings of one kind nearer than this are one, such as the leaves of a double door [m]."""
+_ON_EDGE_M = 1e-5
+_MIN_SHARE = 0.5
+"""Share of an opening's width that must lie in its wall."""
+
+
+@dataclass(frozen=True)
+class Hung:
+    """Walls with their openings, and the openings there was no wall for."""
+
+    walls: tuple[Wall, ...]
+    changes: tuple[Change, ...]
+
+
+def join_leaves(openings: Sequence[RawOpening]) -> list[RawOpening]:
+    """Make one opening of those of one kind that lie next to each other, as double doors do.
+
+    Parameters
+    ----------
+    openings : sequence of RawOpening
+        Those of unknown direction stay as they are.
+    """
+    joined: list[RawOpening] = []
+    for opening in openings:
+        new = opening
+        for other in [*joined]:
+            both = _joined(new, other)
+            if both is not None:
+                joined.remove(other)
+                new = both
+        joined.append(new)
+    return joined
+
+
+def _joined(a: RawOpening, b: RawOpening) -> RawOpening | None:
+    """One opening in place of two that lie next to each other; None where they do not."""
+    if a.direction is None or b.direction is None or _kind(a) != _kind(b):
+        return None
+    along = Wall(a.centre, _onward(a.centre, a.direction), "", 1.0, 1.0)
+    s, across = along_across(along, b.centre)
+    reach_m = (a.width_m + b.width_m) / 2
+    if not _parallel(b, along) or abs(across) > _JOIN_M or abs(s) > reach_m + _JOIN_M:
+        return None
+    low = min(-a.width_m, 2 * s - b.width_m) / 2
+    high = max(a.width_m, 2 * s + b.width_m) / 2
+    return replace(a, centre=along.point_at((low + high) / 2), width_m=high - low)
+
+
+def _kind(opening: RawOpening) -> tuple[object, ...]:
+    return (opening.kind, opening.sill_m, opening.head_m, opening.material, opening.thickness_m)
+
+
+def _onward(point: Point2, direction: Point2) -> Point2:
+    length = hypot(*direction)
+    return (point[0] + direction[0] / length, point[1] + direction[1] / length)
+
+
+def bridge(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall, ...]:
+    """Fill the gaps of walls that are broken at their doors and windows.
+
+    A gap is filled where an opening reaches from the end of a wall to the next wall in the same
+    line, or to one across it; the filling looks like the longest of the walls in line.
+
+    Parameters
+    ----------
+    walls : sequence of Wall
+    openings : sequence of RawOpening
+
+    Returns
+    -------
+    tuple of Wall
+        Those given, then the fillings.
+    """
+    if not walls:
+        return ()
+    tree = shapely.STRtree(wall_lines(walls))
+    thickest_m = max(wall.thickness_m for wall in walls)
+    fillings: list[Wall] = []
+    for opening in openings:
+        far_m = opening.width_m / 2 + thickest_m + _BESIDE_M
+        near = sorted(tree.query(Point(opening.centre), "dwithin", distance=far_m).tolist())
+        filling = _filling(opening, [walls[i] for i in near])
+        if filling is not None:
+            fillings.append(filling)
+    return (*walls, *fillings)
+
+
+def _filling(opening: RawOpening, near: Sequence[Wall]) -> Wall | None:
+    """Wall in the gap that an opening fills; None where it stands in a wall or in no gap."""
+    if any(_parallel(opening, wall) and _holds(wall, opening) for wall in near):
+        return None
+    in_line = [wall for wall in near if _parallel(opening, wall) and _beside(wall, opening)]
+    for wall in sorted(in_line, key=lambda wall: -wall.length_m):
+        s, _ = along_across(wall, opening.centre)
+        spans = [span for other in near if (span := _contact(wall, other)) is not None]
+        left = max((span for span in spans if span.high <= s), key=lambda c: c.high, default=None)
+        right = min((span for span in spans if span.low >= s), key=lambda c: c.low, default=None)
+        slack_m = opening.width_m / 2 + _FRAME_M
+        if left and right and s - left.high <= slack_m and right.low - s <= slack_m:
+            start, end = _at(wall, left.gap_after), _at(wall, right.gap_before)
+            filling = replace(wall, start=start, end=end, openings=())
+            return filling if filling.length_m > TOLERANCE_M else None
+    return None
+
+
+@dataclass(frozen=True)
+class _Contact:
+    """Stretch of a line in which another wall stands, and where a gap before and after it ends."""
+
+    low: float
+    high: float
+    gap_before: float
+    gap_after: float
+
+
+def _contact(line: Wall, other: Wall) -> _Contact | None:
+    """Where a wall in line with another one, or across it, stands on the other's line."""
+    ends = [along_across(line, end) for end in (other.start, other.end)]
+    (s0, t0), (s1, t1) = ends
+    if max(abs(t0), abs(t1)) < (line.thickness_m + other.thickness_m) / 2:
+        low, high = min(s0, s1), max(s0, s1)
+        return _Contact(low, high, gap_before=low, gap_after=high)
+    slack_m = other.thickness_m / 2 + _TOUCH_M
+    if min(t0, t1) > slack_m or max(t0, t1) < -slack_m or abs(t1 - t0) < TOLERANCE_M:
+        return None
+    s = s0 + (s1 - s0) * min(max(-t0 / (t1 - t0), 0.0), 1.0)
+    half_m = other.thickness_m / 2
+    return _Contact(s - half_m, s + half_m, gap_before=s, gap_after=s)
+
+
+def _at(wall: Wall, s: float) -> Point2:
+    """Point at a distance along a wall's line, before its start or beyond its end too."""
+    ux, uy = direction(wall)
+    return tidy_point(wall.start[0] + s * ux, wall.start[1] + s * uy)
+
+
+def _beside(wall: Wall, opening: RawOpening) -> bool:
+    """Whether the middle of an opening lies beside a wall's line."""
+    _, across = along_across(wall, opening.centre)
+    return abs(across) <= wall.thickness_m / 2 + _BESIDE_M
+
+
+def _parallel(opening: RawOpening, wall: Wall) -> bool:
+    if opening.direction is None:
+        return True
+    (ux, uy), (vx, vy) = direction(wall), opening.direction
+    return abs(ux * vy - uy * vx) <= _MAX_SINE * hypot(vx, vy)
+
+
+def _holds(wall: Wall, opening: RawOpening) -> bool:
+    """Whether the middle of an opening lies beside a wall, and half its width along it."""
+    s, across = along_across(wall, opening.centre)
+    overlap = min(s + opening.width_m / 2, wall.length_m) - max(s - opening.width_m / 2, 0.0)
+    beside = abs(across) <= wall.thickness_m / 2 + _BESIDE_M
+    return beside and 0 <= s <= wall.length_m and overlap > _MIN_SHARE * opening.width_m
+
+
+def hang(walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon) -> Hung:
+    """Cut openings into the walls they stand in.
+
+    Parameters
+    ----------
+    walls : sequence of Wall
+    openings : sequence of RawOpening
+        Doors before windows: of two that overlap the earlier one stays.
+    outline : shapely.geometry.Polygon
+        Openings in its edge get a filling.
+
+    Returns
+    -------
+    Hung
+    """
+    tree = shapely.STRtree(wall_lines(walls))
+    thickest_m = max(wall.thickness_m for wall in walls)
+    changes: list[Change] = []
+    shares: list[list[Opening]] = [list(wall.openings) for wall in walls]
+    edge = outline.boundary.buffer(_ON_EDGE_M)
+    for raw in openings:
+        near = tree.query(Point(raw.centre), "dwithin", distance=thickest_m / 2 + _BESIDE_M)
+        fitting = [i for i in near.tolist() if _parallel(raw, walls[i]) and _holds(walls[i], raw)]
+        if not fitting:
+            changes.append(
+                Change("dropped", f"{raw.kind} that stands in no wall dropped", raw.centre)
+            )
+            continue
+        i = min(fitting, key=lambda i: (abs(along_across(walls[i], raw.centre)[1]), i))
+        _add(shares[i], _opening(raw, walls[i], edge))
+    hung = [
+        replace(wall, openings=tuple(sorted(share, key=lambda o: (o.offset_m, o.sill_m))))
+        for wall, share in zip(walls, shares, strict=True)
+    ]
+    return Hung(tuple(hung), tuple(changes))
+
+
+def _opening(raw: RawOpening, wall: Wall, edge: BaseGeometry) -> Opening:
+    """Opening of a wall, with defaults for what the file does not tell."""
+    s, _ = along_across(wall, raw.centre)
+    low, high = max(s - raw.width_m / 2, 0.0), min(s + raw.width_m / 2, wall.length_m)
+    low, high = tidy_point(low, high)
+    window = raw.kind == "window"
+    head_m = raw.head_m or (WINDOW_HEAD_M if window else DOOR_HEAD_M)
+    head_m = min(head_m, wall.height_m)
+    sill_m = (WINDOW_SILL_M if window else 0.0) if raw.sill_m is None else max(raw.sill_m, 0.0)
+    material, thickness_m = raw.material, raw.thickness_m
+    if material is None and window:
+        material, thickness_m = WINDOW_MATERIAL, thickness_m or WINDOW_THICKNESS_M
+    elif material is None and _on_edge(wall, low, high, edge):
+        material, thickness_m = DOOR_MATERIAL, thickness_m or DOOR_THICKNESS_M
+    return Opening(
+        offset_m=low,
+        width_m=round(high - low, DECIMALS),
+        sill_m=sill_m if sill_m < head_m else 0.0,
+        head_m=head_m,
+        kind=raw.kind,
+        material=material,
+        thickness_m=thickness_m if material is not None else None,
+    )
+
+
+def _on_edge(wall: Wall, low: float, high: float, edge: BaseGeometry) -> bool:
+    """Whether any of a stretch of a wall lies in the edge of the outline."""
+    stretch = LineString([wall.point_at(low), wall.point_at(high)])
+    return edge.intersection(stretch).length > 3 * _ON_EDGE_M
+
+
+def _add(share: list[Opening], new: Opening) -> None:
+    """Add an opening to those of a wall: joined with one of its kind, cut where others are."""
+    for i, old in enumerate(share):
+        apart_m = max(old.offset_m, new.offset_m) - min(old.end_m, new.end_m)
+        if apart_m <= _JOIN_M and _look(old) == _look(new):
+            low, high = min(old.offset_m, new.offset_m), max(old.end_m, new.end_m)
+            share.pop(i)
+            _add(share, replace(old, offset_m=low, width_m=high - low))
+            return
+    for old in share:
+        over = min(old.head_m, new.head_m) - max(old.sill_m, new.sill_m) > TOLERANCE_M
+        if (
+            over
+            and old.offset_m < new.end_m - TOLERANCE_M
+            and new.offset_m < old.end_m - TOLERANCE_M
+        ):
+            return
+    share.append(new)
+
+
+def _look(opening: Opening) -> tuple[object, ...]:
+    return (opening.kind, opening.sill_m, opening.head_m, opening.material, opening.thickness_m)

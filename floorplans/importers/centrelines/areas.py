@@ -1,0 +1,248 @@
+"""Areas of wall, as seen from above, -> centre lines with the measured thickness.
+
+Two edges of the area that face each other across solid wall are the sides of one straight wall:
+its centre line runs half-way between them, over the stretch on which they face each other, and
+their distance is its thickness. Centre lines on about one line are then put on that line, and each
+end goes on through the solid to the next centre line it meets: to the corner, or into the T.
+
+What is too thick or too squat to be a wall, such as a pillar or a shaft filled in, is kept as the
+ring around it, each side of half the block's width, so that the two sides that a ray passes add up
+to what stands there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from floorplans.importers.centrelines.axes import Axis, on_common_lines
+from floorplans.importers.draft import RawWall
+
+MAX_THICKNESS_M = 1.0
+"""What is thicker is a block, not a wall [m]."""
+
+SQUATNESS = 0.5
+"""A free-standing piece whose width is more than this share of its length is a pillar."""
+
+_PARALLEL = np.cos(np.radians(12.0))
+_FACING_SHARE = 0.6  # of the thickness two sides must at least face each other, to be a wall's
+_BEND = np.sin(np.radians(1.0))
+_REACH = 2.0  # times the thickest wall is how far an end may go on to meet another wall
+
+Vectors = NDArray[np.float64]
+
+
+def walls_of_area(
+    area: BaseGeometry, tolerance_m: float, fillings: BaseGeometry | None = None
+) -> list[RawWall]:
+    """Return the walls that an area of wall consists of.
+
+    Parameters
+    ----------
+    area : shapely geometry
+        Polygons [m]; those that touch or nearly touch are one.
+    tolerance_m : float
+        Gaps up to this are closed, and corners nearer than this to a side are cut off [m].
+    fillings : shapely geometry, optional
+        Areas of doors and windows [m]: they go on the line of their wall and take its thickness.
+
+    Returns
+    -------
+    list of RawWall
+        With thickness; walls of blocks last.
+    """
+    openings = shapely.Polygon() if fillings is None else fillings
+    solid = _polygons(_closed(area.union(openings), tolerance_m).simplify(tolerance_m / 2))
+    whole = shapely.union_all(solid)
+    blocks = _blocks(whole)
+    thin = [
+        part
+        for part in _polygons(whole.difference(shapely.union_all(blocks).buffer(1e-6)))
+        if part.area > tolerance_m**2
+    ]
+    found = [_marked(axis, openings) for part in thin for axis in _axes(part)]
+    axes = on_common_lines(found, whole)
+    rings = [side for block in blocks for side in _ring_walls(block)]
+    reach = [RawWall(axis.start, axis.end, axis.thickness_m) for axis in axes]
+    return [*_joined(reach, rings, whole), *rings]
+
+
+def block_walls(block: Polygon) -> list[RawWall]:
+    """Return the ring of walls around something solid, each of half its width."""
+    return _ring_walls(shapely.orient_polygons(block))
+
+
+def _closed(area: BaseGeometry, gap_m: float) -> BaseGeometry:
+    """Close gaps narrower than `gap_m`, and remove slivers."""
+    grown = area.buffer(gap_m / 2, join_style="mitre")
+    return grown.buffer(-gap_m, join_style="mitre").buffer(gap_m / 2, join_style="mitre")
+
+
+def _polygons(geometry: BaseGeometry) -> list[Polygon]:
+    """Polygons of a geometry, outer rings counter-clockwise."""
+    parts = shapely.get_parts(shapely.orient_polygons(geometry))
+    return [part for part in parts if isinstance(part, Polygon) and part.area > 0]
+
+
+def _blocks(whole: BaseGeometry) -> list[Polygon]:
+    half = MAX_THICKNESS_M / 2
+    core = whole.buffer(-half, join_style="mitre").buffer(half, join_style="mitre")
+    thick = _polygons(core.intersection(whole)) if not core.is_empty else []
+    blocks = [part for part in thick if part.area > half**2]
+    return blocks + [part for part in _polygons(whole) if _is_pillar(part)]
+
+
+def _is_pillar(part: Polygon) -> bool:
+    width, length = box_sides(part)
+    return not part.interiors and SQUATNESS * length < width <= MAX_THICKNESS_M
+
+
+def box_sides(polygon: BaseGeometry) -> tuple[float, float]:
+    """Return width and length of the smallest box around a shape, at any angle [m]."""
+    box = shapely.oriented_envelope(polygon)
+    if not isinstance(box, Polygon):
+        return 0.0, box.length
+    a, b, c = shapely.get_coordinates(box)[:3]
+    width, length = sorted((float(np.hypot(*(b - a))), float(np.hypot(*(c - b)))))
+    return width, length
+
+
+def _ring_walls(block: Polygon) -> list[RawWall]:
+    thickness_m = min(max(box_sides(block)[0], 2e-3), MAX_THICKNESS_M) / 2
+    corners = [(float(x), float(y)) for x, y in block.exterior.coords]
+    return [RawWall(a, b, thickness_m) for a, b in pairwise(corners)]
+
+
+@dataclass(frozen=True)
+class _Edges:
+    """Sides of a polygon, the solid on their left: starts, unit directions (n, 2), lengths (n,)."""
+
+    start: Vectors
+    along: Vectors
+    length: Vectors
+
+
+def _edges(part: Polygon) -> _Edges:
+    rings = [shapely.get_coordinates(ring) for ring in (part.exterior, *part.interiors)]
+    start = np.concatenate([ring[:-1] for ring in rings])
+    step = np.concatenate([np.diff(ring, axis=0) for ring in rings])
+    length = np.hypot(step[:, 0], step[:, 1])
+    real = length > 0
+    return _Edges(start[real], step[real] / length[real, None], length[real])
+
+
+def _axes(part: Polygon) -> list[Axis]:
+    """Centre lines of all pairs of sides that face each other."""
+    edges = _edges(part)
+    ends = np.stack([edges.start, edges.start + edges.along * edges.length[:, None]], axis=1)
+    lines = np.array(shapely.linestrings(ends), dtype=np.object_)
+    pairs = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=MAX_THICKNESS_M)
+    near = pairs[:, pairs[0] < pairs[1]].T
+    opposed = np.sum(edges.along[near[:, 0]] * edges.along[near[:, 1]], axis=1) < -_PARALLEL
+    inside = part.buffer(1e-6)
+    shapely.prepare(inside)
+    found = [_axis_between(edges, int(i), int(j)) for i, j in near[opposed]]
+    return [a for a in found if a is not None and inside.covers(LineString([a.start, a.end]))]
+
+
+def _marked(axis: Axis, fillings: BaseGeometry) -> Axis:
+    """Mark an axis whose middle lies in a filling."""
+    middle = LineString([axis.start, axis.end]).centroid
+    return replace(axis, is_filling=bool(fillings.covers(middle)))
+
+
+def _axis_between(edges: _Edges, i: int, j: int) -> Axis | None:
+    """Centre line of the wall between two sides, None where they do not face each other."""
+    along = edges.along[i] - edges.along[j]
+    along /= np.hypot(*along)
+    across = np.array([-along[1], along[0]])
+    ends = np.array(
+        [[edges.start[k], edges.start[k] + edges.along[k] * edges.length[k]] for k in (i, j)]
+    )
+    s, t = ends @ along, ends @ across
+    low, high = max(s[0].min(), s[1].min()), min(s[0].max(), s[1].max())
+    if high <= low:
+        return None
+    near, far = (np.interp([low, high], np.sort(s[k]), t[k][np.argsort(s[k])]) for k in (0, 1))
+    thickness_m = float(np.mean(far - near))
+    if not 1e-3 < thickness_m <= MAX_THICKNESS_M or high - low < _FACING_SHARE * thickness_m:
+        return None
+    middle = (near + far) / 2
+    start, end = (along * p + across * q for p, q in zip((low, high), middle, strict=True))
+    return Axis((float(start[0]), float(start[1])), (float(end[0]), float(end[1])), thickness_m)
+
+
+def _joined(walls: list[RawWall], rings: list[RawWall], whole: BaseGeometry) -> list[RawWall]:
+    """Let each end go on through the solid to the nearest centre line it meets."""
+    if not walls:
+        return []
+    solid = whole.buffer(1e-6)
+    shapely.prepare(solid)
+    reach_m = _REACH * max(wall.thickness_m or 0.0 for wall in walls)
+    long = [_lengthened(wall, solid, reach_m) for wall in walls]
+    others = [*long, *(LineString([ring.start, ring.end]) for ring in rings)]
+    tree = shapely.STRtree(others)
+    near = [[m for m in tree.query(line).tolist() if m != k] for k, line in enumerate(long)]
+    cut = [_cut(walls[k], long[k], [others[m] for m in near[k]]) for k in range(len(walls))]
+    ends = shapely.points([end for wall in cut for end in (wall.start, wall.end)])
+    return [_reaching(wall, long[k], np.array(ends)) for k, wall in enumerate(cut)]
+
+
+def _lengthened(wall: RawWall, solid: BaseGeometry, reach_m: float) -> LineString:
+    """Lengthen a wall's centre line at both ends as far as there is solid."""
+    a, b = np.array(wall.start), np.array(wall.end)
+    step = (b - a) / np.hypot(*(b - a)) * reach_m
+    ends = [_last_solid(a, a - step, solid), _last_solid(b, b + step, solid)]
+    return LineString(ends)
+
+
+def _last_solid(start: Vectors, end: Vectors, solid: BaseGeometry) -> Vectors:
+    """Point up to which the way from `start` to `end` stays in the solid."""
+    for part in shapely.get_parts(LineString([start, end]).intersection(solid)):
+        points = shapely.get_coordinates(part)
+        if len(points) and np.hypot(*(points - start).T).min() < 1e-5:
+            return points[np.argmax(np.hypot(*(points - start).T))]
+    return start
+
+
+def _bends(along: Vectors, other: LineString) -> bool:
+    """Whether another line goes off a direction by more than a rounding error."""
+    a, b = shapely.get_coordinates(other)
+    return abs(along[0] * (b - a)[1] - along[1] * (b - a)[0]) > _BEND * np.hypot(*(b - a))
+
+
+def _cut(wall: RawWall, long: LineString, others: list[LineString]) -> RawWall:
+    """End a lengthened wall where it meets the others, or where it ended when it meets none."""
+    a, b = np.array(wall.start), np.array(wall.end)
+    length = float(np.hypot(*(b - a)))
+    along = (b - a) / length
+    points = shapely.get_coordinates([long.intersection(x) for x in others if _bends(along, x)])
+    s = (points - a) @ along
+    slack = min(wall.thickness_m or 0.0, length / 2)
+    before, after = s[s < slack], s[s > length - slack]
+    first = before[np.argmin(np.abs(before))] if len(before) else 0.0
+    last = after[np.argmin(np.abs(after - length))] if len(after) else length
+    start, end = a + first * along, a + last * along
+    return RawWall(
+        (float(start[0]), float(start[1])), (float(end[0]), float(end[1])), wall.thickness_m
+    )
+
+
+def _reaching(wall: RawWall, long: LineString, ends: NDArray[np.object_]) -> RawWall:
+    """Let a wall go on to the ends of others that were cut at its lengthened line."""
+    a, b = np.array(wall.start), np.array(wall.end)
+    length = float(np.hypot(*(b - a)))
+    on_line = ends[np.array(shapely.dwithin(ends, long, 1e-6))]
+    s = (shapely.get_coordinates(list(on_line)) - a) @ (b - a) / length
+    slack = wall.thickness_m or 0.0
+    s = s[(s > -slack) & (s < length + slack)]
+    start, end = (a + (b - a) * float(t) / length for t in (s.min(), s.max()))
+    return RawWall(
+        (float(start[0]), float(start[1])), (float(end[0]), float(end[1])), wall.thickness_m
+    )

@@ -1,0 +1,269 @@
+"""DXF file -> plain lines by layer, and the symbols of doors and windows.
+
+Blocks are exploded as deep as they go, except those of doors and windows, which are symbols: their
+lines are kept together. Arcs, circles, bulges, ellipses and splines become chords. Coordinates stay
+in the drawing's unit, seen from above.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from math import hypot, isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from floorplans.errors import PlanError
+from floorplans.importers.dxf.curves import CURVE_TYPES, Curve, curves_of, moved_curve
+from floorplans.importers.layer_names import Kind, Meaning, meaning_of
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing as Document
+    from ezdxf.entities.dxfgfx import DXFGraphic
+
+MAX_BYTES = 200_000_000
+MAX_RECORDS = 1_000_000
+MAX_ENTITIES = 500_000
+"""After blocks are exploded."""
+
+_MAX_DEPTH = 24
+_RECORD = re.compile(rb"^[ \t]*0[ \t]*\r?\n", re.MULTILINE)
+_FILLED = ("HATCH", "SOLID", "TRACE")
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A door or a window: the curves of its block, and the block's x axis.
+
+    `named` tells whether the block's own name says its kind, or a layer of windows does.
+    """
+
+    kind: Kind
+    named: bool
+    layer: str
+    axis: tuple[float, float]
+    curves: tuple[Curve, ...]
+
+
+@dataclass
+class Content:
+    """What a drawing holds.
+
+    Attributes
+    ----------
+    curves : mapping of str to list of Curve
+        By layer; only of layers that matter.
+    symbols : list of Symbol
+    n_objects : Counter of str
+        Objects of each layer, blocks exploded.
+    hidden : set of str
+        Layers that are off or frozen.
+    """
+
+    curves: defaultdict[str, list[Curve]] = field(default_factory=lambda: defaultdict(list))
+    symbols: list[Symbol] = field(default_factory=list[Symbol])
+    n_objects: Counter[str] = field(default_factory=Counter[str])
+    hidden: set[str] = field(default_factory=set[str])
+
+
+def load_document(path: Path) -> Document:
+    """Load a drawing, refusing what would take minutes.
+
+    Raises
+    ------
+    PlanError
+        When the file is no DXF file, too large, or its blocks explode into too many objects.
+    """
+    _check_file(path)
+    with _damage_told():
+        document = _load(path)
+        _check_blocks(document)
+    return document
+
+
+def read_content(document: Document, layers: Mapping[str, str], tolerance: float) -> Content:
+    """Read the model space of a drawing.
+
+    Parameters
+    ----------
+    document : ezdxf.document.Drawing
+    layers : mapping of str to str
+        The user's meanings of layers; see `layer_names.meaning_of`.
+    tolerance : float
+        Chords leave a curve by at most this, in the drawing's unit.
+
+    Returns
+    -------
+    Content
+    """
+    with _damage_told():
+        hidden = {layer.dxf.name for layer in document.layers if _is_hidden(layer)}
+        content = Content(hidden=hidden)
+        _Collector(content, layers, tolerance).collect(document.modelspace(), None, 0)
+    return content
+
+
+def _check_file(path: Path) -> None:
+    """Refuse a file that would take minutes to load."""
+    size = path.stat().st_size
+    if size > MAX_BYTES:
+        raise PlanError(
+            f"the file has {size / 1e6:.0f} MB, more than {MAX_BYTES / 1e6:.0f} MB; {_LESS}"
+        )
+    records = sum(1 for _ in _RECORD.finditer(path.read_bytes()))
+    if records > MAX_RECORDS:
+        raise PlanError(f"the file holds about {records} objects, more than {MAX_RECORDS}; {_LESS}")
+
+
+_LESS = "save one storey, with the layers of its walls, doors and windows only"
+
+
+@contextmanager
+def _damage_told() -> Generator[None]:
+    """Turn what the library raises for a damaged file, in many ways, into one error."""
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        yield
+    except (PlanError, MemoryError):
+        raise
+    except DXFError as error:
+        raise PlanError(f"not a DXF file that can be read: {error}") from error
+    except Exception as error:
+        raise PlanError(
+            f"the file is damaged ({type(error).__name__}: {error}); open and save it with a CAD "
+            "program"
+        ) from error
+
+
+def _load(path: Path) -> Document:
+    """Read a document, damaged ones as far as possible."""
+    import ezdxf.filemanagement
+    from ezdxf import recover
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        return ezdxf.filemanagement.readfile(path)
+    except (DXFError, OSError, ValueError):
+        document, _ = recover.readfile(path)
+        return document
+
+
+def _is_hidden(layer: Any) -> bool:
+    return bool(layer.is_off() or layer.is_frozen())
+
+
+def _check_blocks(document: Document) -> None:
+    """Refuse blocks that explode into too many objects, before exploding any."""
+    sizes: dict[str, float] = {}
+    total = _exploded(document.modelspace(), document, sizes, 0)
+    if total > MAX_ENTITIES:
+        raise PlanError(
+            f"the drawing's blocks explode into {total:.3g} objects, more than {MAX_ENTITIES}; "
+            f"{_LESS}"
+        )
+
+
+def _exploded(
+    entities: Iterable[DXFGraphic], document: Document, sizes: dict[str, float], depth: int
+) -> float:
+    """Count the objects of a layout or block, with those of the blocks inside."""
+    total = 0.0
+    for entity in entities:
+        if entity.dxftype() != "INSERT":
+            total += 1
+            continue
+        name = str(entity.dxf.name)
+        if name not in sizes:
+            sizes[name] = 0.0
+            if name in document.blocks and depth < _MAX_DEPTH:
+                sizes[name] = _exploded(document.blocks[name], document, sizes, depth + 1)
+        total += max(sizes[name], 1.0) * max(entity.dxf.row_count * entity.dxf.column_count, 1)
+    return total
+
+
+class _Collector:
+    """Walks through a layout and the blocks in it, and puts what matters into a `Content`."""
+
+    def __init__(self, content: Content, layers: Mapping[str, str], tolerance: float) -> None:
+        self._content = content
+        self._layers = layers
+        self._tolerance = tolerance
+        self._meanings: dict[str, Meaning] = {}
+        self._blocks: dict[str, tuple[Curve, ...]] = {}
+
+    def collect(self, entities: Iterable[DXFGraphic], within: str | None, depth: int) -> None:
+        """Take in entities; those of a block on layer 0 are on the layer `within`."""
+        for entity in entities:
+            if not entity.is_supported_dxf_attrib("layer"):
+                continue
+            layer = str(entity.dxf.get("layer", "0"))
+            layer = within if layer == "0" and within is not None else layer
+            if layer in self._content.hidden and layer not in self._layers:
+                self._content.n_objects[layer] += 1
+            elif entity.dxftype() == "INSERT":
+                self._collect_insert(entity, layer, depth)
+            else:
+                self._collect_curve(entity, layer)
+
+    def _meaning(self, name: str) -> Meaning:
+        if name not in self._meanings:
+            self._meanings[name] = meaning_of(name, self._layers)
+        return self._meanings[name]
+
+    def _collect_curve(self, entity: DXFGraphic, layer: str) -> None:
+        self._content.n_objects[layer] += 1
+        if self._meaning(layer).kind != "ignore" and entity.dxftype() in CURVE_TYPES:
+            self._content.curves[layer] += curves_of(entity, self._tolerance)
+
+    def _collect_insert(self, insert: Any, layer: str, depth: int) -> None:
+        layer_kind = self._meaning(layer).kind
+        name_kind = meaning_of(str(insert.dxf.get("name", ""))).kind
+        named = name_kind in ("door", "window")
+        kind = name_kind if named else layer_kind
+        if layer_kind == "ignore" or depth >= _MAX_DEPTH:
+            self._content.n_objects[layer] += 1
+        elif kind in ("door", "window"):
+            self._content.n_objects[layer] += 1
+            for single in _singles(insert):
+                self._content.symbols.append(self._symbol(single, kind, named, layer, depth))
+        else:
+            for single in _singles(insert):
+                self.collect(single.virtual_entities(), layer, depth + 1)
+
+    def _symbol(self, insert: Any, kind: Kind, named: bool, layer: str, depth: int) -> Symbol:
+        matrix = insert.matrix44()
+        x, y, _ = matrix.ux
+        usable = isfinite(hypot(x, y)) and hypot(x, y) > 0
+        axis = (float(x), float(y)) if usable else (1.0, 0.0)
+        curves = tuple(moved_curve(curve, matrix) for curve in self._block(insert, depth))
+        return Symbol(kind, named or kind == "window", layer, axis, curves)
+
+    def _block(self, insert: Any, depth: int) -> tuple[Curve, ...]:
+        """Lines of an insert's block and of those in it, in the block's own coordinates."""
+        name = str(insert.dxf.get("name", ""))
+        if name not in self._blocks:
+            self._blocks[name] = ()
+            block = insert.block()
+            self._blocks[name] = tuple(self._all_curves(block, depth)) if block else ()
+        return self._blocks[name]
+
+    def _all_curves(self, entities: Iterable[DXFGraphic], depth: int) -> Iterator[Curve]:
+        for entity in entities:
+            if entity.dxftype() in CURVE_TYPES and entity.dxftype() not in _FILLED:
+                yield from curves_of(entity, self._tolerance)
+            elif entity.dxftype() == "INSERT" and depth < _MAX_DEPTH:
+                for single in _singles(entity):
+                    matrix = single.matrix44()
+                    yield from (moved_curve(c, matrix) for c in self._block(single, depth + 1))
+
+
+def _singles(insert: Any) -> Iterator[Any]:
+    """Inserts of a grid of blocks, one at a time."""
+    if insert.mcount > 1:
+        yield from insert.multi_insert()
+    else:
+        yield insert

@@ -1,0 +1,95 @@
+"""Which layers of a drawing are walls, doors and windows, and what became of each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from floorplans.errors import PlanError
+from floorplans.importers.draft import LayerUse
+from floorplans.importers.dxf.drawing import Content
+from floorplans.importers.layer_names import Kind, Meaning, meaning_of
+
+
+@dataclass(frozen=True)
+class Layers:
+    """Meaning of each layer, how many objects it holds, and why, where it is not its name."""
+
+    meanings: Mapping[str, Meaning]
+    content: Content
+    why: Mapping[str, str]
+
+    def of(self, kind: Kind) -> tuple[str, ...]:
+        """Names of the layers of a kind that hold lines, in order."""
+        return tuple(
+            name
+            for name, meaning in self.meanings.items()
+            if meaning.kind == kind and self.content.curves.get(name)
+        )
+
+    def material(self, layer: str) -> str | None:
+        """Material of the walls of a layer."""
+        return self.meanings[layer].material
+
+    def uses(self) -> tuple[LayerUse, ...]:
+        """What became of each layer."""
+        return tuple(
+            LayerUse(name, self.content.n_objects[name], self._became(name))
+            for name in sorted(self.meanings, key=str.casefold)
+        )
+
+    def _became(self, name: str) -> str:
+        meaning = self.meanings[name]
+        n_symbols = sum(symbol.layer == name for symbol in self.content.symbols)
+        parts: list[str] = []
+        if meaning.kind in ("wall", "door", "window") and self.content.curves.get(name):
+            of = f" of {meaning.material}" if meaning.material else ""
+            parts.append(f"{meaning.kind}s{of}")
+        if n_symbols:
+            parts.append(f"{n_symbols} blocks of doors and windows")
+        why = self.why.get(name, "")
+        return (", ".join(parts) or "left out") + (f" ({why})" if why else "")
+
+
+def layers_of(content: Content, given: Mapping[str, str]) -> Layers:
+    """Tell what each layer is.
+
+    Where no layer is known to hold walls, the layers nothing is known of are taken for walls.
+
+    Parameters
+    ----------
+    content : Content
+    given : mapping of str to str
+        The user's meanings of layers.
+
+    Raises
+    ------
+    PlanError
+        When there are no lines that could be walls.
+    """
+    why: dict[str, str] = {}
+    meanings: dict[str, Meaning] = {}
+    for name in content.n_objects:
+        meanings[name] = meaning_of(name, given)
+        if name in content.hidden and name not in given:
+            meanings[name], why[name] = Meaning("ignore"), "off or frozen in the drawing"
+        elif meanings[name].kind is None:
+            why[name] = f"unknown name; --layer '{name}=wall' takes it in"
+    layers = Layers(meanings, content, why)
+    if not layers.of("wall"):
+        unknown = {n for n, m in meanings.items() if m.kind is None and content.curves.get(n)}
+        meanings |= dict.fromkeys(unknown, Meaning("wall"))
+        why |= dict.fromkeys(unknown, "no layer is named like walls")
+    if not layers.of("wall"):
+        raise _no_walls(content)
+    return layers
+
+
+def _no_walls(content: Content) -> PlanError:
+    if not content.n_objects:
+        return PlanError("the drawing is empty: nothing is in its model space")
+    names = ", ".join(f"{name!r}" for name in sorted(content.n_objects)[:20])
+    return PlanError(
+        "no lines of walls were found; tell which layers hold them, such as --layer NAME=wall; "
+        f"layers with objects: {names}"
+    )

@@ -1,0 +1,313 @@
+"""DXF drawings -> drafts of plans.
+
+Layers tell what lines are, by their names or by the user's word. Closed outlines of wall bodies,
+fills, and the strips between two parallel lines make up the area of wall; gaps in it at doors and
+windows are filled; its centre lines, with the measured thickness, are the walls. A line without a
+partner is a wall of unknown thickness. Doors and windows come from blocks, from the swings of door
+leaves, and from lines that lie in a gap; other lines of windows are walls of glass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from floorplans.errors import PlanError
+from floorplans.importers.assembly.openings import WINDOW_MATERIAL, WINDOW_THICKNESS_M, join_leaves
+from floorplans.importers.centrelines.align import along_walls, squared
+from floorplans.importers.centrelines.areas import MAX_THICKNESS_M, walls_of_area
+from floorplans.importers.centrelines.gaps import fill_gaps
+from floorplans.importers.centrelines.materials import by_material, without_openings
+from floorplans.importers.centrelines.parallel_lines import strips_of_lines
+from floorplans.importers.centrelines.spurious import without_doubles
+from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
+from floorplans.importers.dxf.curves import Curve, Swing
+from floorplans.importers.dxf.drawing import Content, load_document, read_content
+from floorplans.importers.dxf.layers import Layers, layers_of
+from floorplans.importers.dxf.openings import (
+    as_windows_outside,
+    door_swings,
+    loose_lines,
+    opening_of_swing,
+    openings_of_symbol,
+)
+from floorplans.importers.units import UNITS, check_size, guess_unit, unit_length
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing as Document
+
+CHORD_M = 0.02
+"""Chords leave an arc by at most this [m]."""
+MAX_LINES = 20_000
+"""Lines on the layers of walls; more are no single storey."""
+_PAIR_M = 0.6
+"""Two lines farther apart than this are not the sides of one wall [m]."""
+_CLOSE_M = 0.02
+_IN_WALL_M = 0.05
+_AT_FACE_M = 0.12
+_CROSSING_M = 1.0
+_MIN_SINGLE_M = 0.3
+_STRAY_PERCENT = (0.5, 99.5)
+
+_INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 14: "dm"}
+
+Material = str | None
+
+
+@dataclass(frozen=True)
+class _Bodies:
+    """What the layers of walls hold.
+
+    Attributes
+    ----------
+    area : mapping of Material to shapely geometry
+        Area of wall of each material [m].
+    singles : tuple of (LineString, Material)
+        Lines without a partner [m].
+    """
+
+    area: Mapping[Material, BaseGeometry]
+    singles: tuple[tuple[LineString, Material], ...]
+
+
+def read_dxf(path: Path, options: ImportOptions) -> Draft:
+    """Read a DXF drawing of one storey.
+
+    Parameters
+    ----------
+    path : Path
+    options : ImportOptions
+        `unit`, `layers` and `tolerance_m` (of chords) are used here.
+
+    Returns
+    -------
+    Draft
+
+    Raises
+    ------
+    PlanError
+        When the file is damaged or too large, holds no walls, or its unit cannot be told.
+    """
+    document = load_document(path)
+    unit, told = _unit(document, options)
+    tolerance = (options.tolerance_m or CHORD_M) / UNITS[unit]
+    content = read_content(document, options.layers, tolerance)
+    layers = layers_of(content, options.layers)
+    check_size(_size(content, layers), unit, told)
+    metric = _in_metres(content, UNITS[unit])
+    walls, openings = _building(metric, layers)
+    return Draft(
+        name=path.stem,
+        walls=tuple(walls),
+        openings=tuple(openings),
+        layers=layers.uses(),
+        notes=(f"unit {unit}, as {told}",),
+    )
+
+
+def _unit(document: Document, options: ImportOptions) -> tuple[str, str]:
+    """Unit of the drawing, and who says so."""
+    if options.unit is not None:
+        unit_length(options.unit)
+        return options.unit, "you say"
+    code = document.header.get("$INSUNITS", 0)
+    if code in _INSUNITS:
+        return _INSUNITS[code], "the file says"
+    content = read_content(document, options.layers, tolerance=np.inf)
+    layers = layers_of(content, options.layers)
+    curves = [c for layer in layers.of("door") for c in content.curves[layer]]
+    curves += [c for symbol in content.symbols if symbol.kind == "door" for c in symbol.curves]
+    radii = [curve.swing.radius for curve in curves if curve.swing is not None]
+    unit = guess_unit(_size(content, layers), radii)
+    return unit, "the sizes of building and doors say (the file does not)"
+
+
+def _size(content: Content, layers: Layers) -> tuple[float, float]:
+    """Width and depth of the walls, in the drawing's unit, but for points that lie astray."""
+    curves = [curve for layer in layers.of("wall") for curve in content.curves[layer]]
+    points = np.array([point for curve in curves for point in curve.points])
+    width, depth = np.diff(np.percentile(points, _STRAY_PERCENT, axis=0), axis=0)[0]
+    return float(width), float(depth)
+
+
+def _in_metres(content: Content, unit_m: float) -> Content:
+    def scaled(curve: Curve) -> Curve:
+        points = tuple((x * unit_m, y * unit_m) for x, y in curve.points)
+        swing = curve.swing
+        if swing is not None:
+            hinge, *ends = ((x * unit_m, y * unit_m) for x, y in (swing.hinge, *swing.ends))
+            swing = Swing(hinge, (ends[0], ends[1]))
+        return replace(curve, points=points, swing=swing)
+
+    metric = Content(n_objects=content.n_objects, hidden=content.hidden)
+    for layer, curves in content.curves.items():
+        metric.curves[layer] = [scaled(curve) for curve in curves]
+    metric.symbols = [
+        replace(symbol, curves=tuple(scaled(curve) for curve in symbol.curves))
+        for symbol in content.symbols
+    ]
+    return metric
+
+
+def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[RawOpening]]:
+    """Walls and openings of a drawing in metres."""
+    bodies = _bodies(content, layers)
+    area = shapely.union_all(list(bodies.area.values()))
+    ground = shapely.union_all(
+        [area, *(line for line, _ in bodies.singles), *_panes(content, layers)]
+    )
+    openings = [o for symbol in content.symbols for o in openings_of_symbol(symbol, ground)]
+    openings += _swing_openings(content, layers, ground)
+    openings = join_leaves(along_walls(openings, _faces(content, layers)))
+    filled = list(fill_gaps(area, openings))
+    area = shapely.union_all([area, *filled])
+    loose, glass = _loose_openings(content, layers, area)
+    filled += fill_gaps(area, loose)
+    area = shapely.union_all([area, *filled])
+    openings = as_windows_outside([*openings, *loose], area)
+    solid = without_openings(bodies.area, openings)
+    walls = walls_of_area(area, _CLOSE_M, shapely.union_all(filled)) if not area.is_empty else []
+    walls = squared(without_doubles(walls, area))
+    return [
+        *(piece for wall in walls for piece in by_material(wall, solid)),
+        *_single_walls(bodies, area),
+        *_glass_walls(glass, area),
+    ], openings
+
+
+def _faces(content: Content, layers: Layers) -> NDArray[np.float64]:
+    """All straight lines of walls and panes, (n, 2, 2) [m]."""
+    curves = [c for k in ("wall", "window") for name in layers.of(k) for c in content.curves[name]]
+    chains = [np.array([*curve.points, *curve.points[: curve.closed]]) for curve in curves]
+    return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
+
+
+def _panes(content: Content, layers: Layers) -> list[LineString]:
+    """Lines of windows, which may be walls of glass that doors stand in."""
+    curves = [curve for layer in layers.of("window") for curve in content.curves[layer]]
+    return [LineString(curve.points) for curve in curves]
+
+
+def _bodies(content: Content, layers: Layers) -> _Bodies:
+    """Area of wall and single lines of each material."""
+    curves: dict[Material, list[Curve]] = {}
+    for layer in layers.of("wall"):
+        curves.setdefault(layers.material(layer), []).extend(content.curves[layer])
+    _check_number(curves)
+    sorted_out = {material: _thin_bodies(chains) for material, chains in curves.items()}
+    faces = shapely.union_all([body for closed, _ in sorted_out.values() for body in closed])
+    beside = faces.buffer(_AT_FACE_M)
+    area: dict[Material, BaseGeometry] = {}
+    singles: list[tuple[LineString, Material]] = []
+    for material, (closed, segments) in sorted_out.items():
+        walls = strips_of_lines(segments, _PAIR_M)
+        strips = [s for s in walls.area if s.difference(beside).area > s.area / 2]
+        area[material] = shapely.union_all([*closed, *strips])
+        singles += [(LineString(ends), material) for ends in walls.singles]
+    return _Bodies(area, tuple(singles))
+
+
+def _check_number(curves: Mapping[Material, Sequence[Curve]]) -> None:
+    """Refuse more lines than the walls of a storey have, before the slow work."""
+    n_lines = sum(len(chain.points) for chains in curves.values() for chain in chains)
+    if n_lines > MAX_LINES:
+        raise PlanError(
+            f"the layers of walls hold {n_lines} lines, more than the {MAX_LINES} of a single "
+            "storey; leave layers out with --layer NAME=ignore, or save one storey"
+        )
+
+
+def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:
+    """Walls on lines without a partner; what lies beside a face of a wall is left out."""
+    wide = area.buffer(_AT_FACE_M)
+    for line, material in bodies.singles:
+        for part in shapely.get_parts(line.difference(wide)):
+            if part.length > min(_MIN_SINGLE_M, line.length / 2):
+                (x0, y0), *_, (x1, y1) = part.coords
+                yield RawWall((x0, y0), (x1, y1), None, material)
+
+
+def _thin_bodies(chains: Sequence[Curve]) -> tuple[list[Polygon], NDArray[np.float64]]:
+    """Closed chains around what is thin enough to be a wall, and the segments of the others."""
+    area: list[Polygon] = []
+    segments: list[NDArray[np.float64]] = []
+    for chain in chains:
+        points = np.array([*chain.points, *chain.points[: chain.closed]])
+        body = shapely.make_valid(Polygon(points)) if chain.closed and len(points) > 3 else None
+        if body is not None and body.area > 0 and body.buffer(-MAX_THICKNESS_M / 2).is_empty:
+            area += [part for part in shapely.get_parts(body) if isinstance(part, Polygon)]
+        elif not chain.filled:
+            segments.append(np.stack([points[:-1], points[1:]], axis=1))
+    return area, np.concatenate(segments) if segments else np.empty((0, 2, 2))
+
+
+def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> list[RawOpening]:
+    """Openings of door leaves that are drawn as they are, without a block."""
+    curves = [curve for layer in layers.of("door") for curve in content.curves[layer]]
+    return [opening_of_swing(swing, curves, ground) for swing in door_swings(curves)]
+
+
+def _loose_openings(
+    content: Content, layers: Layers, area: BaseGeometry
+) -> tuple[list[RawOpening], list[LineString]]:
+    """Lines of windows and doors that lie in a wall or in a gap of one, and those that do not."""
+    openings: list[RawOpening] = []
+    glass: list[LineString] = []
+    for layer in (*layers.of("window"), *layers.of("door")):
+        curves = content.curves[layer]
+        leaves = [curve.swing for curve in curves if curve.swing is not None]
+        straight = [curve for curve in curves if curve.swing is None]
+        for heap in loose_lines(straight, "window"):
+            if _has_leaf(heap.lines, leaves):
+                continue
+            if heap.opening is not None and _stands(heap.opening, area):
+                openings.append(heap.opening)
+            else:
+                glass += heap.lines
+    return openings, glass
+
+
+def _has_leaf(lines: Sequence[LineString], leaves: Sequence[Swing]) -> bool:
+    """Whether lines belong to a door's leaf."""
+    heap = shapely.union_all(list(lines))
+    return any(Point(p).distance(heap) < _IN_WALL_M for s in leaves for p in (s.hinge, *s.ends))
+
+
+def _stands(opening: RawOpening, area: BaseGeometry) -> bool:
+    """Whether an opening lies in a wall, or in a gap of one."""
+    in_wall = Point(opening.centre).distance(area) < _IN_WALL_M
+    return in_wall or bool(fill_gaps(area, [opening]))
+
+
+def _outside(line: LineString, area: BaseGeometry) -> BaseGeometry:
+    """Line without the stretches along which it runs inside an area, short crossings aside."""
+    inside = shapely.get_parts(line.intersection(area))
+    along = [part for part in inside if part.length > min(_CROSSING_M, 0.9 * line.length)]
+    return line.difference(shapely.union_all(along).buffer(_IN_WALL_M / 10))
+
+
+def _glass_walls(lines: Sequence[LineString], area: BaseGeometry) -> list[RawWall]:
+    """Walls of glass on single lines, and between two lines that face each other.
+
+    What runs in other walls or on their faces is left out; a pane may cross them.
+    """
+    wide = area.buffer(_IN_WALL_M)
+    parts = shapely.get_parts([_outside(line, wide) for line in lines])
+    chains = [shapely.get_coordinates(part) for part in parts if part.length > _MIN_SINGLE_M]
+    if not chains:
+        return []
+    walls = strips_of_lines(
+        np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in chains]), _PAIR_M
+    )
+    found = walls_of_area(shapely.union_all(list(walls.area)), _CLOSE_M) if walls.area else []
+    ends = [(wall.start, wall.end) for wall in found]
+    ends += [((x0, y0), (x1, y1)) for (x0, y0), (x1, y1) in walls.singles.tolist()]
+    return [RawWall(a, b, WINDOW_THICKNESS_M, WINDOW_MATERIAL) for a, b in ends]

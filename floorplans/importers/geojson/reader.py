@@ -1,0 +1,112 @@
+"""GeoJSON and IMDF -> Draft.
+
+Walls drawn as areas become centre lines with the measured thickness; walls drawn as lines are
+taken as they are; where no wall is drawn as an area, walls also stand around and between the rooms.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+from floorplans.errors import PlanError
+from floorplans.geojson_plan import is_plan, plan_from_geojson
+from floorplans.georeference import GeoOrigin
+from floorplans.importers.draft import Draft, ImportOptions, LayerUse, Origin
+from floorplans.importers.geojson.features import FeatureClass, Kind, classify
+from floorplans.importers.geojson.files import Collection, read_collection
+from floorplans.importers.geojson.frame import geometry_of, to_metres
+from floorplans.importers.geojson.levels import on_level
+from floorplans.importers.geojson.walls import Placed, openings_of, walls_of
+from floorplans.plan import FloorPlan
+
+TOLERANCE_M = 0.05
+
+_USED: tuple[Kind, ...] = ("wall", "door", "window", "passage", "room", "outline")
+
+
+def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
+    """Read a GeoJSON file, or an IMDF venue in a folder or archive.
+
+    Parameters
+    ----------
+    path : Path
+    options : ImportOptions
+        `level`, `unit`, `tolerance_m` and `layers` are used.
+
+    Returns
+    -------
+    Draft or FloorPlan
+        The very plan, from a file that `floorplans.exporters` wrote.
+
+    Raises
+    ------
+    PlanError
+        When the file cannot be read, or has nothing of a building.
+    """
+    collection = read_collection(path)
+    if is_plan(collection.document):
+        return plan_from_geojson(collection.document, origin=str(path))
+    classes = [classify(feature, options) for feature in collection.features]
+    placed, origin = _placed(collection, classes, options)
+    tolerance_m = options.tolerance_m or TOLERANCE_M
+    walls = walls_of(placed, tolerance_m)
+    if not walls:
+        raise PlanError(_nothing_found(classes))
+    return Draft(
+        name=path.stem,
+        walls=tuple(walls),
+        openings=tuple(openings_of(placed, tolerance_m)),
+        origin=None if origin is None else _named(origin),
+        georeference=origin,
+        layers=tuple(_uses(placed, classes)),
+    )
+
+
+def _placed(
+    collection: Collection, classes: Sequence[FeatureClass], options: ImportOptions
+) -> tuple[list[Placed], GeoOrigin | None]:
+    """Return the features of one level that are of use, in metres, and where (0, 0) is."""
+    used = [i for i, what in enumerate(classes) if what.kind in _USED]
+    if not used:
+        raise PlanError(_nothing_found(classes))
+    levels = [i for i, what in enumerate(classes) if what.kind == "level"]
+    here = on_level([collection.features[i] for i in [*used, *levels]], options.level)
+    used = [i for i, is_here in zip(used, here, strict=False) if is_here]
+    drawn = [geometry_of(collection.features[i], i) for i in used]
+    metres, origin = to_metres(drawn, collection.crs, options.unit)
+    placed = [
+        Placed(collection.features[i], classes[i], geometry)
+        for i, geometry in zip(used, metres, strict=True)
+    ]
+    return placed, origin
+
+
+def _named(origin: GeoOrigin) -> Origin:
+    return Origin(origin.longitude_deg, origin.latitude_deg, "longitude and latitude [degrees]")
+
+
+def _nothing_found(classes: Sequence[FeatureClass]) -> str:
+    labels = Counter(what.label for what in classes)
+    shown = ", ".join(f"{label} ({n})" for label, n in labels.most_common(12))
+    return (
+        f"no wall and no room was recognised among the features, which are called: {shown}; say "
+        "which are walls, such as --layer NAME=wall"
+    )
+
+
+def _uses(placed: Sequence[Placed], classes: Sequence[FeatureClass]) -> list[LayerUse]:
+    """Tell what became of the features, a line for each name they go by."""
+    total = Counter((what.label, what.kind) for what in classes)
+    here = Counter((p.what.label, p.what.kind) for p in placed)
+    return [
+        LayerUse(label, n, _became(kind, here[label, kind], n))
+        for (label, kind), n in sorted(total.items(), key=lambda item: item[0][0])
+    ]
+
+
+def _became(kind: str | None, n_here: int, n_total: int) -> str:
+    if kind not in _USED:
+        return "left out"
+    return f"{kind}" if n_here == n_total else f"{kind}; {n_total - n_here} on other levels"

@@ -1,0 +1,143 @@
+"""IFC files: opening them, their units, their storeys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from floorplans.errors import PlanError
+from floorplans.importers.draft import ImportOptions
+from floorplans.importers.ifc.curves import Entity
+from floorplans.importers.ifc.shapes import Scale, placement_of
+from floorplans.importers.units import unit_length
+
+MAX_BYTES = 1_000_000_000
+CHORD_M = 0.02
+"""By default, chords leave an arc by at most this [m]."""
+
+_END = b"END-ISO-10303-21;"
+_TAIL_BYTES = 4096
+
+Model = Any
+"""An ifcopenshell.file; the library gives no types."""
+
+
+@dataclass(frozen=True)
+class Storey:
+    """A storey of a model: its entity, name, elevation in the file's world [m], and elements."""
+
+    entity: Entity
+    name: str
+    elevation_m: float
+    elements: tuple[Entity, ...]
+
+    @property
+    def walls(self) -> tuple[Entity, ...]:
+        """Its walls and curtain walls."""
+        kinds = ("IfcWall", "IfcCurtainWall")
+        return tuple(e for e in self.elements if any(e.is_a(kind) for kind in kinds))
+
+
+def open_model(path: Path) -> Model:
+    """Read an IFC file; raise `PlanError` where that is not possible."""
+    try:
+        import ifcopenshell
+    except ImportError as error:
+        raise PlanError('IFC files need a library: pip install "rssnav[ifc]"') from error
+    size = path.stat().st_size
+    if size > MAX_BYTES:
+        raise PlanError(
+            f"{size / 1e9:.3g} GB, more than the {MAX_BYTES / 1e9:.3g} GB that are read; export "
+            "one storey, or walls, slabs, doors and windows only"
+        )
+    with path.open("rb") as file:
+        file.seek(max(0, size - _TAIL_BYTES))
+        if _END not in file.read():
+            raise PlanError("the file is cut off: it does not end with END-ISO-10303-21")
+    try:
+        return ifcopenshell.open(str(path))
+    except Exception as error:  # the library raises what it likes
+        raise PlanError(f"not a readable IFC model: {error}") from error
+
+
+def scale_of(model: Model, options: ImportOptions) -> Scale:
+    """Find the units of a model; raise `PlanError` where it does not tell its unit of length."""
+    from ifcopenshell.util.unit import calculate_unit_scale
+
+    chord_m = options.tolerance_m or CHORD_M
+    radian = float(calculate_unit_scale(model, "PLANEANGLEUNIT"))
+    if options.unit is not None:
+        return Scale(unit_length(options.unit), radian, chord_m)
+    units = [unit for them in model.by_type("IfcUnitAssignment") for unit in them.Units]
+    if not any(getattr(unit, "UnitType", None) == "LENGTHUNIT" for unit in units):
+        raise PlanError(
+            "the model does not tell its unit of length; give it (--unit mm|cm|m|in|ft)", ("unit",)
+        )
+    return Scale(float(calculate_unit_scale(model)), radian, chord_m)
+
+
+def storey_of(model: Model, level: str | None, metre: float) -> Storey:
+    """Choose a storey by name, number or elevation; without a choice, the only one with walls.
+
+    Raises
+    ------
+    PlanError
+        When there is none, or it is not clear which; the message lists them.
+    """
+    storeys = _storeys(model, metre)
+    if not storeys:
+        n_walls = len(model.by_type("IfcWall"))
+        raise PlanError(
+            f"the model has no IfcBuildingStorey, so its {n_walls} walls belong to no storey; "
+            "export it from the building program with its storeys"
+        )
+    if level is None:
+        with_walls = [storey for storey in storeys if storey.walls]
+        if len(with_walls) == 1:
+            return with_walls[0]
+        if not with_walls:
+            raise PlanError(f"no storey of the model has walls; {_listed(storeys)}")
+        raise PlanError(f"choose a storey with --level; {_listed(storeys)}", ("level",))
+    fitting = [storey for k, storey in enumerate(storeys) if _fits(storey, k, level)]
+    named = [storey for storey in fitting if storey.name.casefold() == level.casefold()]
+    fitting = named or fitting
+    if len(fitting) != 1:
+        found = "no storey" if not fitting else f"{len(fitting)} storeys"
+        raise PlanError(f"{found} of that name, number or elevation; {_listed(storeys)}",
+                        ("level",), level)  # fmt: skip
+    return fitting[0]
+
+
+def _storeys(model: Model, metre: float) -> list[Storey]:
+    """All storeys, lowest first."""
+    from ifcopenshell.util.element import get_decomposition
+
+    found = [
+        Storey(
+            entity,
+            entity.LongName or entity.Name or "",
+            metre * float(placement_of(entity)[2, 3]),
+            tuple(sorted(get_decomposition(entity, is_recursive=True), key=lambda e: e.id())),
+        )
+        for entity in model.by_type("IfcBuildingStorey")
+    ]
+    return sorted(found, key=lambda storey: storey.elevation_m)
+
+
+def _fits(storey: Storey, number: int, level: str) -> bool:
+    names = {str(name).casefold() for name in (storey.entity.Name, storey.entity.LongName) if name}
+    if level.casefold() in names or level == str(number):
+        return True
+    try:
+        return "." in level and abs(float(level) - storey.elevation_m) < 0.005
+    except ValueError:
+        return False
+
+
+def _listed(storeys: list[Storey]) -> str:
+    rows = (
+        f"{number}: {storey.name!r} at {storey.elevation_m:.2f} m with {len(storey.walls)} walls"
+        for number, storey in enumerate(storeys)
+    )
+    return f"there are {'; '.join(rows)}"

@@ -1,0 +1,72 @@
+"""Materials of IFC elements, by the names that people give them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fnmatch import fnmatchcase
+
+from floorplans.importers.ifc.curves import Entity
+from floorplans.importers.layer_names import material_named, parse_meaning
+
+
+def dominant_material(
+    element: Entity, metre: float, layers: Mapping[str, str]
+) -> tuple[str | None, float | None]:
+    """Material of the thickest layer that has a known one, and the thickness of all layers [m].
+
+    Parameters
+    ----------
+    element : entity
+    metre : float
+        Length of the file's unit [m].
+    layers : mapping of str to str
+        Name or pattern of a material in the file -> KIND:MATERIAL; it goes before the names.
+
+    Returns
+    -------
+    material : str or None
+    thickness_m : float or None
+        None where the element has no layers.
+    """
+    from ifcopenshell.util.element import get_material
+
+    material = get_material(element, should_skip_usage=True)
+    if material is None:
+        return None, None
+    if material.is_a("IfcMaterialLayerSet"):
+        rows = [
+            (metre * float(layer.LayerThickness), _known(layer.Material, layers))
+            for layer in material.MaterialLayers
+        ]
+        known = [row for row in rows if row[1] is not None]
+        total_m = sum(row[0] for row in rows)
+        return (max(known)[1] if known else None), (total_m if total_m > 0 else None)
+    names = [_known(one, layers) for one in _parts(material)]
+    return next((name for name in names if name is not None), None), None
+
+
+def layer_count(element: Entity) -> int:
+    """Count the layers of an element's material, 0 where it is none of layers."""
+    from ifcopenshell.util.element import get_material
+
+    material = get_material(element, should_skip_usage=True)
+    if material is None or not material.is_a("IfcMaterialLayerSet"):
+        return 0
+    return len(material.MaterialLayers)
+
+
+def _parts(material: Entity) -> list[Entity]:
+    if material.is_a("IfcMaterialConstituentSet"):
+        return [part.Material for part in material.MaterialConstituents or ()]
+    if material.is_a("IfcMaterialList"):
+        return list(material.Materials)
+    return [material] if material.is_a("IfcMaterial") else []
+
+
+def _known(material: Entity | None, layers: Mapping[str, str]) -> str | None:
+    if material is None or not material.Name:
+        return None
+    for pattern, meaning in layers.items():
+        if fnmatchcase(material.Name.casefold(), pattern.casefold()):
+            return parse_meaning(meaning, pattern).material
+    return material_named(material.Name) or material_named(getattr(material, "Category", "") or "")

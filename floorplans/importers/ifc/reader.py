@@ -1,0 +1,229 @@
+"""IFC models -> drafts of plans, one storey at a time.
+
+Walls are read from their bodies (the middle of the footprint) and, where they are curved, from
+their axes; their thickness and material from their layers, else from the body. What voids a wall
+is an opening: a door or window where one fills it, else a passage. Slabs and ceilings above tell
+the height. Needs ifcopenshell, the extra ``rssnav[ifc]``.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import atan2, degrees
+from pathlib import Path
+
+import numpy as np
+from shapely.errors import ShapelyError
+
+from floorplans.errors import PlanError
+from floorplans.georeference import GeoOrigin
+from floorplans.importers.draft import Draft, ImportOptions, LayerUse, RawOpening
+from floorplans.importers.ifc.curves import Entity
+from floorplans.importers.ifc.file import Model, Storey, open_model, scale_of, storey_of
+from floorplans.importers.ifc.materials import dominant_material, layer_count
+from floorplans.importers.ifc.shapes import Body, Scale, bodies
+from floorplans.importers.ifc.walls import ReadWall, read_filling, read_wall
+
+MAX_WALLS = 20_000
+
+_DAMAGED = (
+    ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, ShapelyError,
+    TypeError, ValueError,
+)  # fmt: skip
+"""What a model whose entities miss parts, or refer to others of a wrong class, ends in."""
+
+_SLABS = ("IfcSlab", "IfcRoof", "IfcCovering")
+_CEILING_M = (1.8, 30.0)
+_SAME_CEILING_M = 0.3
+_TO_CEILING_M = 0.35
+"""A wall that ends at most this below the ceiling reaches it: slabs and ceilings are thick [m]."""
+
+
+def read_ifc(path: Path, options: ImportOptions) -> Draft:
+    """Read one storey of an IFC model.
+
+    Parameters
+    ----------
+    path : Path
+    options : ImportOptions
+        `level` is the storey's name, its number from below, or its elevation [m] with a point;
+        `layers` maps names of materials.
+
+    Returns
+    -------
+    Draft
+
+    Raises
+    ------
+    PlanError
+        When the file cannot be read, or it is not clear which storey is meant.
+    """
+    model = open_model(path)
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore", DeprecationWarning)  # the library's own
+            return _read_storey(model, path, options)
+    except PlanError:
+        raise
+    except _DAMAGED as error:
+        raise PlanError(f"the model is damaged: {type(error).__name__}: {error}") from error
+
+
+def _read_storey(model: Model, path: Path, options: ImportOptions) -> Draft:
+    scale = scale_of(model, options)
+    storey = storey_of(model, options.level, scale.metre)
+    if len(storey.walls) > MAX_WALLS:
+        raise PlanError(f"{len(storey.walls)} walls, more than the {MAX_WALLS} of one storey")
+    floor_m = storey.elevation_m
+    read = [read_wall(wall, floor_m, scale, options.layers) for wall in storey.walls]
+    walls = [wall for wall in read if wall is not None]
+    slabs = _slabs(model, storey, scale)
+    height_m = options.height_m or _ceiling(slabs, floor_m) or _highest(walls)
+    floor = next((e for e, body in slabs if abs(body.z_max - floor_m) < _SAME_CEILING_M), None)
+    ceiling = next((e for e, body in slabs if _is_ceiling(body, floor_m)), None)
+    loose = [
+        opening
+        for filling in storey.elements
+        if _fills_nothing(filling)
+        and (opening := read_filling(filling, floor_m, scale)) is not None
+    ]
+    return Draft(
+        name=" ".join(f"{path.stem} {storey.name}".split()),
+        walls=tuple(
+            replace(piece, height_m=_height(wall.top_m, height_m))
+            for wall in walls
+            for piece in wall.pieces
+        ),
+        openings=tuple(_within(loose, walls, height_m)),
+        height_m=height_m,
+        floor_material=_material(floor, scale, options),
+        ceiling_material=_material(ceiling, scale, options),
+        georeference=_georeference(model),
+        layers=tuple(_uses(storey, read)),
+        notes=tuple(_notes(storey)),
+    )
+
+
+def _slabs(model: Model, storey: Storey, scale: Scale) -> list[tuple[Entity, Body]]:
+    """Slabs, roofs and ceilings above or below the storey's walls, with their bodies."""
+    inside = {element.id() for element in storey.elements}
+    found: list[tuple[Entity, Body]] = []
+    for kind in _SLABS:
+        for element in model.by_type(kind):
+            is_ceiling = getattr(element, "PredefinedType", None) == "CEILING"
+            if kind == "IfcCovering" and not (is_ceiling and element.id() in inside):
+                continue
+            found += [(element, body) for body in bodies(element, scale)]
+    return found
+
+
+def _is_ceiling(body: Body, floor_m: float) -> bool:
+    low, high = _CEILING_M
+    return low <= body.z_min - floor_m <= high
+
+
+def _ceiling(slabs: Sequence[tuple[Entity, Body]], floor_m: float) -> float | None:
+    """Height of the ceiling: of suspended ceilings, else of the lowest slab above.
+
+    Raises
+    ------
+    PlanError
+        When rooms have suspended ceilings at different heights.
+    """
+    above = [(e, body.z_min - floor_m) for e, body in slabs if _is_ceiling(body, floor_m)]
+    if not above:
+        return None
+    suspended = sorted(height for e, height in above if e.is_a("IfcCovering"))
+    if suspended and suspended[-1] - suspended[0] > _SAME_CEILING_M:
+        raise PlanError(
+            f"rooms have ceilings at {suspended[0]:.2f} m to {suspended[-1]:.2f} m, and a plan has "
+            "one flat ceiling, for the tracer's rays go up and down between two planes; give the "
+            "one that matters (--height)",
+            ("height_m",),
+        )
+    return suspended[0] if suspended else min(height for _, height in above)
+
+
+def _highest(walls: Sequence[ReadWall]) -> float | None:
+    """Height at which most of the walls end, to the centimetre."""
+    tops = Counter(round(wall.top_m, 2) for wall in walls if wall.top_m < _CEILING_M[1])
+    return max(tops, key=lambda top: (tops[top], top)) if tops else None
+
+
+def _height(top_m: float, ceiling_m: float | None) -> float | None:
+    """Height of a wall; None where it reaches the ceiling."""
+    if ceiling_m is None or top_m >= ceiling_m - _TO_CEILING_M:
+        return None
+    return top_m
+
+
+def _within(
+    loose: Sequence[RawOpening], walls: Sequence[ReadWall], ceiling_m: float | None
+) -> Iterator[RawOpening]:
+    """Yield openings that lie between floor and ceiling, cut to there."""
+    for opening in (*loose, *(o for wall in walls for o in wall.openings)):
+        head_m = opening.head_m or 0.0
+        if ceiling_m is not None:
+            head_m = min(head_m, ceiling_m)
+        if 0 < opening.width_m < np.inf and head_m > (opening.sill_m or 0.0):
+            yield replace(opening, head_m=head_m)
+
+
+def _fills_nothing(element: Entity) -> bool:
+    return (element.is_a("IfcDoor") or element.is_a("IfcWindow")) and not element.FillsVoids
+
+
+def _material(element: Entity | None, scale: Scale, options: ImportOptions) -> str | None:
+    return None if element is None else dominant_material(element, scale.metre, options.layers)[0]
+
+
+def _georeference(model: Model) -> GeoOrigin | None:
+    """Place of the model's origin, where its site tells one."""
+    sites = [s for s in model.by_type("IfcSite") if s.RefLatitude and s.RefLongitude]
+    if not sites:
+        return None
+    contexts = [c for c in model.by_type("IfcGeometricRepresentationContext", False) if c.TrueNorth]
+    x, y = contexts[0].TrueNorth.DirectionRatios[:2] if contexts else (0.0, 1.0)
+    latitude, longitude = _angle_deg(sites[0].RefLatitude), _angle_deg(sites[0].RefLongitude)
+    return GeoOrigin(longitude, latitude, degrees(atan2(x, y)))
+
+
+def _angle_deg(parts: Sequence[int]) -> float:
+    """Degrees of an angle in degrees, minutes, seconds and millionths of seconds."""
+    units = (1.0, 60.0, 3600.0, 3600e6)
+    return sum(part / unit for part, unit in zip(parts, units, strict=False))
+
+
+def _uses(storey: Storey, read: Sequence[ReadWall | None]) -> Iterator[LayerUse]:
+    """Yield what became of each class of elements."""
+    unread = Counter(wall.is_a() for wall, got in zip(storey.walls, read, strict=True) if not got)
+    for kind, count in sorted(Counter(element.is_a() for element in storey.elements).items()):
+        became = _BECAME.get(kind, "left out")
+        if unread[kind]:
+            became += f"; {unread[kind]} without a readable shape, or not on this floor, left out"
+        yield LayerUse(kind, count, became)
+
+
+_BECAME = {
+    "IfcWall": "walls",
+    "IfcWallStandardCase": "walls",
+    "IfcWallElementedCase": "walls",
+    "IfcCurtainWall": "walls of glass",
+    "IfcOpeningElement": "openings",
+    "IfcDoor": "doors",
+    "IfcWindow": "windows",
+    "IfcSlab": "the heights of floor and ceiling",
+    "IfcCovering": "the height of the ceiling",
+}
+
+
+def _notes(storey: Storey) -> Iterator[str]:
+    n_layered = sum(layer_count(wall) > 1 for wall in storey.walls)
+    if n_layered:
+        yield (
+            f"{n_layered} walls have several layers: each wall is as thick as all of them, and of "
+            "the material of its thickest layer that is known"
+        )

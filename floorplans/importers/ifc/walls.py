@@ -1,0 +1,216 @@
+"""Walls, openings and slabs of an IFC storey -> raw walls and openings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import hypot
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString
+from shapely.geometry.base import BaseGeometry
+
+from floorplans.importers.assembly.openings import WINDOW_MATERIAL, WINDOW_THICKNESS_M
+from floorplans.importers.centrelines.areas import walls_of_area
+from floorplans.importers.draft import RawOpening, RawWall
+from floorplans.importers.ifc.curves import Entity
+from floorplans.importers.ifc.materials import dominant_material
+from floorplans.importers.ifc.shapes import Body, Scale, axis_points, bodies, placement_of
+from floorplans.walls import OpeningKind
+
+Floats = NDArray[np.float64]
+
+MIN_TOP_M = 0.3
+"""What ends below this above the floor is no wall [m]."""
+
+MAX_FOOT_M = 1.0
+"""What begins higher than this above the floor stands on something else [m]."""
+
+_STRAIGHT_SHARE = 0.85
+_PASSAGE_FOOT_M = 0.1
+_BENT_M = 0.01
+
+
+@dataclass(frozen=True)
+class ReadWall:
+    """What came of a wall: pieces with one thickness and material, and the holes in it."""
+
+    pieces: tuple[RawWall, ...]
+    openings: tuple[RawOpening, ...]
+    top_m: float
+
+
+def read_wall(
+    wall: Entity, floor_m: float, scale: Scale, layers: Mapping[str, str]
+) -> ReadWall | None:
+    """Read a wall; None where it has no body and no axis, or does not stand on this floor.
+
+    Parameters
+    ----------
+    wall : entity
+    floor_m : float
+        Elevation of the storey [m].
+    scale : Scale
+    layers : mapping of str to str
+        The user's word on what materials are.
+    """
+    parts = _bodies_of_parts(wall, scale)
+    top_m = max((body.z_max - floor_m for body in parts), default=np.inf)
+    foot_m = min((body.z_min - floor_m for body in parts), default=0.0)
+    if top_m < MIN_TOP_M or foot_m > MAX_FOOT_M:
+        return None
+    axis = axis_points(wall, scale)
+    footprint = shapely.union_all([body.footprint for body in parts])
+    material, layers_m = dominant_material(wall, scale.metre, layers)
+    if wall.is_a("IfcCurtainWall"):
+        material, layers_m = material or WINDOW_MATERIAL, layers_m or WINDOW_THICKNESS_M
+    lines = list(_centre_lines(axis, footprint, layers_m, scale.chord_m))
+    if not lines or not np.isfinite([ends for *ends, _ in lines]).all():
+        return None
+    pieces = [
+        RawWall(start, end, layers_m or thickness_m, material) for start, end, thickness_m in lines
+    ]
+    return ReadWall(tuple(pieces), tuple(_openings(wall, pieces, floor_m, scale)), float(top_m))
+
+
+def read_filling(filling: Entity, floor_m: float, scale: Scale) -> RawOpening | None:
+    """Read a door or window that fills no hole in a wall, by its placement and overall size."""
+    width_m, height_m = (
+        scale.metre * float(size or 0.0) for size in (filling.OverallWidth, filling.OverallHeight)
+    )
+    if not (width_m > 0 and height_m > 0):
+        return None
+    matrix = placement_of(filling)
+    along = matrix[:2, 0] / max(np.hypot(*matrix[:2, 0]), 1e-12)
+    x, y = scale.metre * matrix[:2, 3] + along * width_m / 2
+    sill_m = max(scale.metre * float(matrix[2, 3]) - floor_m, 0.0)
+    return RawOpening(
+        (float(x), float(y)), width_m, _kind(filling), (float(along[0]), float(along[1])),
+        sill_m, sill_m + height_m,
+    )  # fmt: skip
+
+
+def _bodies_of_parts(wall: Entity, scale: Scale) -> list[Body]:
+    """Bodies of a wall, or of what it is put together from."""
+    from ifcopenshell.util.element import get_decomposition
+
+    found = bodies(wall, scale)
+    if found or not wall.IsDecomposedBy:
+        return found
+    return [body for part in get_decomposition(wall) for body in bodies(part, scale)]
+
+
+Line = tuple[tuple[float, float], tuple[float, float], float | None]
+
+
+def _centre_lines(
+    axis: Floats, footprint: BaseGeometry, layers_m: float | None, chord_m: float
+) -> Iterator[Line]:
+    """Straight centre lines (start, end, thickness) of a wall.
+
+    A straight wall lies in the middle of its footprint; a curved one, chords of it, along its
+    axis moved to the middle; a footprint that is no strip is taken apart.
+    """
+    if len(axis) > 2 and _bend(axis) > _BENT_M:
+        yield from _curved(axis, footprint, layers_m)
+    elif footprint.is_empty or not footprint.area > 0:
+        if len(axis) >= 2:
+            yield _point(axis[0]), _point(axis[-1]), layers_m
+    else:
+        along = axis[-1] - axis[0] if len(axis) >= 2 else _long_side(footprint)
+        line, share = _middle_of(footprint, along)
+        if share >= _STRAIGHT_SHARE:
+            yield line
+            return
+        for raw in walls_of_area(footprint, chord_m):
+            yield raw.start, raw.end, raw.thickness_m
+
+
+def _middle_of(footprint: BaseGeometry, along: Floats) -> tuple[Line, float]:
+    """Centre line of the box around a footprint, and the share of the box that it fills."""
+    u = along / np.hypot(*along)
+    across = np.array([-u[1], u[0]])
+    corners = shapely.get_coordinates(footprint)
+    s, t = corners @ u, corners @ across
+    middle = across * (t.min() + t.max()) / 2
+    thickness_m = float(np.ptp(t))
+    share = float(footprint.area / max(np.ptp(s) * thickness_m, 1e-12))
+    return (_point(u * s.min() + middle), _point(u * s.max() + middle), thickness_m), share
+
+
+def _curved(axis: Floats, footprint: BaseGeometry, layers_m: float | None) -> Iterator[Line]:
+    """Chords of a curved wall, moved from its axis to the middle of its footprint."""
+    line: BaseGeometry = LineString(axis)
+    thickness_m = layers_m or (footprint.area / line.length if footprint.area > 0 else None)
+    if thickness_m is not None and not footprint.is_empty:
+        offsets = (0.0, thickness_m / 2, -thickness_m / 2)
+        moved = [LineString(axis).offset_curve(offset) for offset in offsets]
+        line = max(moved, key=lambda curve: _share_within(curve, footprint, thickness_m))
+    for start, end in pairwise(shapely.get_coordinates(line)):
+        yield _point(start), _point(end), thickness_m
+
+
+def _share_within(curve: BaseGeometry, footprint: BaseGeometry, width_m: float) -> float:
+    band = curve.buffer(width_m / 2, cap_style="flat")
+    return band.intersection(footprint).area
+
+
+def _openings(
+    wall: Entity, pieces: Sequence[RawWall], floor_m: float, scale: Scale
+) -> Iterator[RawOpening]:
+    for rel in wall.HasOpenings:
+        hole = rel.RelatedOpeningElement
+        if getattr(hole, "PredefinedType", None) == "RECESS":
+            continue
+        fillings = [filled.RelatedBuildingElement for filled in hole.HasFillings]
+        shapes = bodies(hole, scale)
+        if shapes:
+            yield _opening_of(shapes, pieces, fillings, floor_m)
+        elif fillings and (opening := read_filling(fillings[0], floor_m, scale)) is not None:
+            yield opening
+
+
+def _opening_of(
+    shapes: Sequence[Body], pieces: Sequence[RawWall], fillings: Sequence[Entity], floor_m: float
+) -> RawOpening:
+    """Measure a hole along the piece of its wall that it is nearest to."""
+    footprint = shapely.union_all([shape.footprint for shape in shapes])
+    middle = footprint.centroid
+    piece = min(pieces, key=lambda p: shapely.linestrings([p.start, p.end]).distance(middle))
+    (x0, y0), (x1, y1) = piece.start, piece.end
+    u = np.array([x1 - x0, y1 - y0]) / max(hypot(x1 - x0, y1 - y0), 1e-12)
+    s = shapely.get_coordinates(footprint) @ u
+    across = np.array([-u[1], u[0]])
+    centre = u * (s.min() + s.max()) / 2 + across * (np.array(piece.start) @ across)
+    sill_m = max(min(shape.z_min for shape in shapes) - floor_m, 0.0)
+    head_m = max(shape.z_max for shape in shapes) - floor_m
+    kind: OpeningKind = "passage" if sill_m < _PASSAGE_FOOT_M else "window"
+    if fillings:
+        kind = _kind(fillings[0])
+    return RawOpening(
+        _point(centre), float(np.ptp(s)), kind, (float(u[0]), float(u[1])), float(sill_m),
+        float(head_m),
+    )  # fmt: skip
+
+
+def _kind(filling: Entity) -> OpeningKind:
+    return "door" if filling.is_a("IfcDoor") else "window"
+
+
+def _bend(axis: Floats) -> float:
+    """How far an axis leaves the straight line between its ends [m]."""
+    chord = shapely.linestrings(axis[[0, -1]])
+    return float(shapely.distance(chord, shapely.points(axis)).max())
+
+
+def _long_side(footprint: BaseGeometry) -> Floats:
+    corners = shapely.get_coordinates(shapely.oriented_envelope(footprint))
+    sides = np.diff(corners[:3], axis=0)
+    return sides[np.argmax(np.hypot(*sides.T))]
+
+
+def _point(xy: Floats) -> tuple[float, float]:
+    return float(xy[0]), float(xy[1])

@@ -1,0 +1,1 @@
+"""Occupancy grids of the ROS map_server."""

@@ -1,0 +1,314 @@
+"""TOML <-> FloorPlan: the file format that docs/plan_format.md describes."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import resources
+from itertools import accumulate, pairwise
+from math import dist
+from pathlib import Path
+
+from shapely.geometry import Polygon
+
+from floorplans.checks.walls import check_openings, check_positive, opening_kind
+from floorplans.errors import Place, PlanError, format_place
+from floorplans.georeference import GeoOrigin
+from floorplans.materials import Own, by_name, check_materials
+from floorplans.plan import FloorPlan, UncheckedPlan
+from floorplans.toml.materials import read_materials
+from floorplans.toml.table import Table, as_points
+from floorplans.toml.writer import FORMAT_VERSION, dumps
+from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
+
+PLAN_KEYS = (
+    "name", "format", "height_m", "floor_material", "floor_thickness_m", "ceiling_material",
+    "ceiling_thickness_m", "source", "start", "outline", "holes", "material_edition", "materials",
+    "origin", "defaults", "walls",
+)  # fmt: skip
+ORIGIN_KEYS = ("longitude_deg", "latitude_deg", "rotation_deg")
+DEFAULTS_KEYS = ("material", "thickness_m")
+WALL_KEYS = ("points", "material", "thickness_m", "height_m", "openings")
+OPENING_KEYS = ("kind", "offset_m", "width_m", "sill_m", "head_m", "material", "thickness_m")
+
+Corners = list[tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Unchecked:
+    """A plan as its file tells it.
+
+    Attributes
+    ----------
+    plan : UncheckedPlan
+    piece_counts : tuple of int
+        Straight walls of each of the file's polylines.
+    """
+
+    plan: UncheckedPlan
+    piece_counts: tuple[int, ...]
+
+    @classmethod
+    def of(cls, plan: UncheckedPlan) -> Unchecked:
+        """Number the walls of a plan that is in no file."""
+        return cls(plan, (1,) * len(plan.walls))
+
+    def place_in_file(self, place: Place) -> Place:
+        """Turn the index of a straight wall into that of the file's polyline it is a piece of."""
+        if len(place) < 2 or place[0] != "walls":
+            return place
+        tables = [table for table, count in enumerate(self.piece_counts) for _ in range(count)]
+        return ("walls", tables[int(place[1])], *place[2:])
+
+
+def builtin_names() -> tuple[str, ...]:
+    """Names of the plans that come with the package, sorted."""
+    files = (resources.files("floorplans") / "plans").iterdir()
+    return tuple(sorted(f.name.removesuffix(".toml") for f in files if f.name.endswith(".toml")))
+
+
+def load(plan: str | Path) -> FloorPlan:
+    """Read a plan.
+
+    Parameters
+    ----------
+    plan : str or Path
+        A built-in name (`builtin_names`) or the path of a TOML file.
+
+    Returns
+    -------
+    FloorPlan
+
+    Raises
+    ------
+    PlanError
+        When there is no such plan, or it is wrong.
+    """
+    text, origin = read_text(plan)
+    return loads(text, origin=origin)
+
+
+def read_text(plan: str | Path) -> tuple[str, str]:
+    """Return the text of a built-in plan or a file, and what messages call it; see `load`."""
+    if plan in builtin_names():
+        file = resources.files("floorplans") / "plans" / f"{plan}.toml"
+        return file.read_text(encoding="utf-8"), file.name
+    try:
+        return Path(plan).read_text(encoding="utf-8"), str(plan)
+    except UnicodeDecodeError as error:
+        raise PlanError(f"not UTF-8 text: {error.reason}", origin=str(plan)) from error
+    except OSError as error:
+        raise PlanError(
+            f"the file cannot be read: {error.strerror}; give the path of a TOML file or one of "
+            f"the built-in plans {', '.join(builtin_names())}",
+            origin=str(plan),
+        ) from error
+
+
+def loads(text: str, *, origin: str = "<text>") -> FloorPlan:
+    """Read a plan from TOML text.
+
+    Parameters
+    ----------
+    text : str
+    origin : str
+        What messages call the text, such as the name of its file.
+
+    Returns
+    -------
+    FloorPlan
+
+    Raises
+    ------
+    PlanError
+        When the text is not TOML, or the plan is wrong.
+    """
+    return from_data(_parse(text, origin), origin=origin)
+
+
+def loads_unchecked(text: str, *, origin: str = "<text>") -> Unchecked:
+    """Read a plan from TOML text that may describe an impossible building.
+
+    Raises
+    ------
+    PlanError
+        When the text is not TOML, or not of this format: a key missing, a value of a wrong type.
+    """
+    try:
+        return _read_unchecked(Table(_parse(text, origin), PLAN_KEYS))
+    except PlanError as error:
+        raise PlanError(error.problem, error.place, error.value, origin, error.at) from None
+
+
+def _parse(text: str, origin: str) -> dict[str, object]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise PlanError(f"not valid TOML: {error}", origin=origin) from error
+
+
+def from_data(data: Mapping[str, object], *, origin: str = "<data>") -> FloorPlan:
+    """Make a plan of the keys and values of its TOML file; raise `PlanError` as `loads` does."""
+    try:
+        return _read_plan(Table(data, PLAN_KEYS))
+    except PlanError as error:
+        raise PlanError(error.problem, error.place, error.value, origin, error.at) from None
+
+
+def save(plan: FloorPlan, path: str | Path) -> None:
+    """Write a plan to a TOML file."""
+    Path(path).write_text(dumps(plan), encoding="utf-8", newline="\n")
+
+
+def _read_plan(table: Table) -> FloorPlan:
+    unchecked = _read_unchecked(table)
+    try:
+        return FloorPlan.of(unchecked.plan)
+    except PlanError as error:
+        place = unchecked.place_in_file(error.place)
+        raise PlanError(error.problem, place, error.value, at=error.at) from None
+
+
+def _read_unchecked(table: Table) -> Unchecked:
+    _check_version(table)
+    height_m = table.number("height_m")
+    check_positive(height_m, ("height_m",))
+    defaults = table.table("defaults", DEFAULTS_KEYS)
+    materials = read_materials(table)
+    check_materials(materials, None)
+    own = by_name(materials)
+    walls = table.tables("walls", WALL_KEYS)
+    pieces = [_read_wall(wall, defaults, height_m, own) for wall in walls]
+    floor, ceiling = table.text("floor_material"), table.text("ceiling_material")
+    x, y, z = table.coordinates("source", "xyz")
+    start_x, start_y = table.coordinates("start", "xy")
+    plan = UncheckedPlan(
+        name=table.text("name"),
+        outline=_read_outline(table),
+        walls=tuple(wall for walls in pieces for wall in walls),
+        height_m=height_m,
+        floor_material=floor,
+        ceiling_material=ceiling,
+        source=(x, y, z),
+        start=(start_x, start_y),
+        floor_thickness_m=table.number("floor_thickness_m", _layers_m(floor, own, 0.2)),
+        ceiling_thickness_m=table.number("ceiling_thickness_m", _layers_m(ceiling, own, 0.2)),
+        origin=_read_origin(table),
+        materials=materials,
+        material_edition=table.optional_text("material_edition"),
+    )
+    return Unchecked(plan, tuple(len(walls) for walls in pieces))
+
+
+def _check_version(table: Table) -> None:
+    version = table.number("format")
+    if version != FORMAT_VERSION:
+        raise PlanError(
+            f"expected {FORMAT_VERSION}, the only format there is", ("format",), version
+        )
+
+
+def _read_outline(table: Table) -> Polygon:
+    shell = _ring(table.points("outline"), ("outline",))
+    holes = [
+        _ring(as_points(hole, ("holes", index)), ("holes", index))
+        for index, hole in enumerate(table.items("holes"))
+    ]
+    return Polygon(shell, holes)
+
+
+def _read_origin(table: Table) -> GeoOrigin | None:
+    if "origin" not in table.data:
+        return None
+    origin = table.table("origin", ORIGIN_KEYS)
+    return GeoOrigin(
+        origin.number("longitude_deg"),
+        origin.number("latitude_deg"),
+        origin.number("rotation_deg", 0.0),
+    )
+
+
+def _ring(points: Corners, place: Place) -> Corners:
+    if len(points) < 4:
+        raise PlanError("expected at least three corners, then the first one again", place, points)
+    if points[0] != points[-1]:
+        raise PlanError(
+            f"{format_place(place)} is not closed: repeat the first point {list(points[0])}",
+            (*place, len(points) - 1),
+            points[-1],
+        )
+    return points
+
+
+def _layers_m(material: str | None, own: Own, otherwise: float | None) -> float | None:
+    """Thickness of a plan's own layered material [m], or another value for any other material."""
+    if material is None or material not in own:
+        return otherwise
+    layers_m = own[material].thickness_m
+    return otherwise if layers_m is None else layers_m
+
+
+def _read_wall(table: Table, defaults: Table, ceiling_m: float, own: Own) -> list[Wall]:
+    """Return one wall for each straight piece of the polyline."""
+    points = table.points("points")
+    if len(points) < 2:
+        raise PlanError("expected at least two points", (*table.place, "points"), points)
+    material = table.text("material", defaults.optional_text("material"))
+    default_m = _layers_m(material, own, defaults.optional_number("thickness_m"))
+    thickness_m = table.number("thickness_m", default_m)
+    height_m = table.number("height_m", ceiling_m)
+    openings = [_read_opening(row, own) for row in table.tables("openings", OPENING_KEYS)]
+    lengths = [dist(start, end) for start, end in pairwise(points)]
+    whole = Wall((0.0, 0.0), (sum(lengths), 0.0), material, thickness_m, height_m, tuple(openings))
+    check_openings(whole, own, table.place)
+    shares = _share_out(openings, lengths, points, table.place)
+    return [
+        Wall(start, end, material, thickness_m, height_m, share)
+        for (start, end), share in zip(pairwise(points), shares, strict=True)
+    ]
+
+
+def _read_opening(table: Table, own: Own) -> Opening:
+    material = table.optional_text("material")
+    thickness_m = table.optional_number("thickness_m")
+    return Opening(
+        offset_m=table.number("offset_m"),
+        width_m=table.number("width_m"),
+        sill_m=table.number("sill_m", 0.0),
+        head_m=table.number("head_m"),
+        kind=opening_kind(table.text("kind"), (*table.place, "kind")),
+        material=material,
+        thickness_m=_layers_m(material, own, None) if thickness_m is None else thickness_m,
+    )
+
+
+def _share_out(
+    openings: list[Opening], lengths: list[float], points: list[Point], place: Place
+) -> list[tuple[Opening, ...]]:
+    """Give each straight piece of a polyline its openings, with offsets from the piece's start."""
+    begins = list(accumulate(lengths, initial=0.0))
+    shares: list[list[Opening]] = [[] for _ in lengths]
+    for index, opening in enumerate(openings):
+        middle = opening.offset_m + opening.width_m / 2
+        piece = max(i for i in range(len(lengths)) if begins[i] <= middle)
+        for corner in (piece, piece + 1):
+            inside = opening.offset_m + TOLERANCE_M < begins[corner] < opening.end_m - TOLERANCE_M
+            if inside:
+                x, y = points[corner]
+                raise PlanError(
+                    f"the opening goes around the corner at ({x:g}, {y:g}), {begins[corner]:g} m "
+                    "along the wall; move it to one side or split it",
+                    (*place, "openings", index, "offset_m"),
+                    opening.offset_m,
+                )
+        shares[piece].append(_moved(opening, begins[piece]))
+    return [tuple(share) for share in shares]
+
+
+def _moved(opening: Opening, begin_m: float) -> Opening:
+    offset_m = max(opening.offset_m - begin_m, 0.0)
+    return Opening(
+        offset_m, opening.width_m, opening.sill_m, opening.head_m, opening.kind,
+        opening.material, opening.thickness_m,
+    )  # fmt: skip

@@ -1,0 +1,69 @@
+"""What the pictures of a plan have in common: their marks, and the legend that explains them."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.path import Path
+
+from floorplans.materials import MATERIALS
+from floorplans.pictures.symbols import leaf_and_arc
+from floorplans.plan import FloorPlan
+from floorplans.walls import Opening, Wall
+
+INK = "#222222"
+SOURCE = "#d81b60"
+START = "#1e6fd9"
+
+
+def markers() -> tuple[Line2D, Line2D]:
+    """Return the marks of source and start, without a position."""
+    source = Line2D([], [], marker="*", markersize=15, color=SOURCE, label="source (phone)")
+    start = Line2D([], [], marker="o", markersize=8, color=START, label="start")
+    for gid, artist in (("source", source), ("start", start)):
+        artist.set(gid=gid, linestyle="none", markeredgecolor="white", zorder=5)
+    return source, start
+
+
+def material_handles(plan: FloorPlan) -> Iterator[Artist]:
+    """Yield a patch for each material of walls and fillings: built-in ones, then the plan's own."""
+    used = {wall.material for wall in plan.walls}
+    used |= {o.material for _, o in plan_openings(plan) if o.material is not None}
+    for material in (*MATERIALS, *plan.own_materials):
+        if material in used:
+            yield Patch(facecolor=plan.colour_of(material), label=material.replace("_", " "))
+
+
+def kind_handles(plan: FloorPlan) -> Iterator[Artist]:
+    """Yield the symbols of low walls and of the kinds of openings that the plan has."""
+    for height_m in sorted({wall.height_m for wall in plan.walls if is_low(wall, plan)}):
+        yield Patch(facecolor=("k", 0.2), edgecolor="k", lw=0.4, label=f"wall {height_m:g} m high")
+    symbols = {
+        "door": _door_symbol(),
+        "window": Patch(facecolor="white", edgecolor=INK, lw=0.6, label="window"),
+        "passage": Line2D([], [], color=INK, lw=0.6, linestyle="--", label="passage"),
+    }
+    used = {opening.kind for _, opening in plan_openings(plan)}
+    yield from (symbol for kind, symbol in symbols.items() if kind in used)
+
+
+def plan_openings(plan: FloorPlan) -> Iterator[tuple[Wall, Opening]]:
+    """Yield every opening with its wall."""
+    for wall in plan.walls:
+        for opening in wall.openings:
+            yield wall, opening
+
+
+def is_low(wall: Wall, plan: FloorPlan) -> bool:
+    """Tell whether a wall ends below the ceiling."""
+    return wall.height_m < plan.height_m
+
+
+def _door_symbol() -> Line2D:
+    leaf, arc = leaf_and_arc(np.zeros(2), np.array([1.0, 0.0]), np.array([0.0, 1.0]))
+    swing = Path(np.concatenate([arc, leaf[::-1]]) - 0.5)
+    door = Line2D([], [], linestyle="none", marker=swing, markersize=12, label="door")
+    door.set(markerfacecolor="none", markeredgecolor=INK, markeredgewidth=0.6)
+    return door

@@ -1,0 +1,298 @@
+"""A plan in three dimensions for viewers: a GLB file, or one page of HTML to turn and zoom.
+
+>>> import floorplans
+>>> from floorplans.pictures.viewer_3d import add_lines, plan_scene, save_scene
+>>> scene = plan_scene(floorplans.load("flat"))
+>>> add_lines(scene, "paths", [[(1, 1, 1), (2, 3, 2)]], "crimson")
+>>> save_scene(scene, "flat.html")  # doctest: +SKIP
+
+A scene is a `trimesh.Scene` with a node a material ("walls:brick"), lying as glTF wants it: y up.
+The page carries three.js with it and works without a network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import trimesh
+from matplotlib.colors import to_rgba_array
+from matplotlib.typing import ColorType
+from numpy.typing import ArrayLike, NDArray
+from trimesh.exchange.gltf import export_glb
+from trimesh.viewer.notebook import scene_to_html
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
+
+from floorplans.mesh import Triangles, slab_triangles
+from floorplans.pictures.legend import SOURCE, START
+from floorplans.plan import FloorPlan
+
+Y_UP = np.array(
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
+)
+"""Turns (x, y, z) with z up into glTF's axes, y up."""
+
+GLASS_OPACITY = 0.35
+FLOOR_COLOUR = "#cfc9ba"
+MARKER_RADIUS_M = 0.15
+LINE_RADIUS_M = 0.02
+CAMERA_PITCH_DEG = -50.0
+FIELD_OF_VIEW_DEG = 45.0
+
+_TUBE_SIDES = 5
+_FONT = "font:13px/1.5 sans-serif;pointer-events:none"
+_OLD_TITLE = "<title>trimesh: threejs viewer</title>"
+_PAGE_CHANGES = (
+    (
+        "scene.add(tracklight);",
+        "scene.add(tracklight);scene.add(tracklight.target);tracklight.intensity=0.7;"
+        "scene.add(new THREE.AmbientLight(0xffffff,0.6));",
+    ),
+    (
+        "tracklight.position.copy(camera.position);",
+        "tracklight.position.copy(camera.position);"
+        "tracklight.target.position.copy(controls.target);",
+    ),
+)
+"""Even light from all sides, and a lamp that shines where the camera looks."""
+
+
+def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) -> trimesh.Scene:
+    """Build the scene of a plan: walls by material, floor, source and start.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+    opacity : float
+        Of walls that are not glass, 0 to 1; below 1 what is behind them shines through.
+    ceiling : bool
+        Whether to put the lid on.
+    """
+    scene = trimesh.Scene()
+    walls = plan.to_mesh()
+    triangles = np.asarray(walls.mesh.triangles, dtype=np.float64)
+    names = np.array([material.name for material in walls.materials])[walls.face_material]
+    is_wall = np.ptp(triangles[:, :, 2], axis=1) > 0
+    for name in dict.fromkeys(names[is_wall].tolist()):
+        share = min(opacity, GLASS_OPACITY) if name == "glass" else opacity
+        sheet = triangles[is_wall & (names == name)]
+        add_triangles(scene, f"walls:{name}", sheet, plan.colour_of(name), share)
+    add_triangles(scene, "floor", slab_triangles(plan.outline, 0.0), FLOOR_COLOUR)
+    if ceiling:
+        lid = slab_triangles(plan.outline, plan.height_m)
+        add_triangles(scene, "ceiling", lid, plan.colour_of(plan.ceiling_material), 0.5)
+    add_points(scene, "source", [plan.source], SOURCE)
+    add_points(scene, "start", [(*plan.start, MARKER_RADIUS_M)], START)
+    _set_camera(scene)
+    return scene
+
+
+def add_triangles(
+    scene: trimesh.Scene, name: str, triangles: Triangles, colour: ColorType, opacity: float = 1.0
+) -> None:
+    """Add a sheet that is seen from both sides.
+
+    Parameters
+    ----------
+    scene : trimesh.Scene
+    name : str
+        Of the node and of its material; a viewer shows it.
+    triangles : (n, 3, 3) array
+        Triangle, corner, (x, y, z) [m], z up.
+    colour : colour of matplotlib
+    opacity : float
+        0 to 1.
+    """
+    rgba = to_rgba_array(colour)[0] * (1.0, 1.0, 1.0, opacity)
+    material = _material(name.rpartition(":")[2], rgba)
+    mesh = _mesh(triangles)
+    mesh.visual = TextureVisuals(material=material)
+    _add(scene, name, mesh)
+
+
+def add_lines(
+    scene: trimesh.Scene,
+    name: str,
+    lines: Sequence[ArrayLike],
+    colours: ColorType | Sequence[ColorType],
+    radius_m: float = LINE_RADIUS_M,
+) -> None:
+    """Add polylines as thin tubes, which every viewer shows with the same width.
+
+    Parameters
+    ----------
+    scene : trimesh.Scene
+    name : str
+        Of the node.
+    lines : sequence of (n_i, 3) arrays
+        Vertices (x, y, z) of each line [m], z up.
+    colours : colour of matplotlib, or one a line
+    radius_m : float
+        Of the tubes [m].
+    """
+    points = [np.asarray(line, dtype=np.float64).reshape(-1, 3) for line in lines]
+    segments = [np.stack([line[:-1], line[1:]], axis=1) for line in points]
+    if not sum(map(len, segments)):
+        return
+    shades = np.broadcast_to(to_rgba_array(colours), (len(points), 4))
+    tubes = _tubes(np.concatenate(segments), radius_m)
+    owner = np.repeat(np.arange(len(points)), [len(pieces) for pieces in segments])
+    mesh = _mesh(tubes.reshape(-1, 3, 3))
+    rgba = (255 * shades[owner]).astype(np.uint8)
+    visual = TextureVisuals(material=_material("", np.ones(4)))
+    visual.vertex_attributes["color"] = np.repeat(rgba, 3 * tubes.shape[1], axis=0)
+    mesh.visual = visual
+    _add(scene, name, mesh)
+
+
+def add_points(
+    scene: trimesh.Scene,
+    name: str,
+    points: Sequence[ArrayLike],
+    colour: ColorType,
+    radius_m: float = MARKER_RADIUS_M,
+) -> None:
+    """Add balls, one at each point (x, y, z) [m]."""
+    if not len(points):
+        return
+    ball = trimesh.creation.icosphere(subdivisions=2, radius=radius_m).triangles
+    centres = np.asarray(points, dtype=np.float64).reshape(-1, 1, 1, 3)
+    add_triangles(scene, name, (centres + ball).reshape(-1, 3, 3), colour)
+
+
+class ColourBar(NamedTuple):
+    """What colours of lines mean: from one end of a bar to the other.
+
+    Attributes
+    ----------
+    colours : sequence of colours of matplotlib
+        At even steps from `low` to `high`.
+    low, high : str
+        Written at the ends of the bar.
+    label : str
+        Written above it.
+    """
+
+    colours: Sequence[ColorType]
+    low: str
+    high: str
+    label: str
+
+    def html(self) -> str:
+        """Bar and texts in the lower left corner of a page."""
+        rgb = [f"rgb({r:.0f},{g:.0f},{b:.0f})" for r, g, b, _ in 255 * to_rgba_array(self.colours)]
+        bar = f"height:12px;background:linear-gradient(to right,{','.join(rgb)})"
+        ends = f"<span>{escape(self.low)}</span><span>{escape(self.high)}</span>"
+        return (
+            f'<div id="colour-bar" style="position:absolute;left:12px;bottom:14px;width:240px;'
+            f'{_FONT}">{escape(self.label)}<div style="{bar}"></div>'
+            f'<div style="display:flex;justify-content:space-between">{ends}</div></div>'
+        )
+
+
+def scene_html(scene: trimesh.Scene, title: str, bar: ColourBar | None = None) -> str:
+    """Return a page that shows the scene: drag to turn, wheel to zoom, right button to move."""
+    page = scene_to_html(scene)
+    for old, new in _PAGE_CHANGES:
+        page = page.replace(old, new, 1)
+    page = page.replace(_OLD_TITLE, f"<title>{escape(title)}</title>", 1)
+    overlay = _key(scene, title) + ("" if bar is None else bar.html())
+    return page.replace("<body>", f"<body>{overlay}", 1)
+
+
+def _key(scene: trimesh.Scene, title: str) -> str:
+    """HTML of the title and of the colours' meaning, over the upper left corner of the page."""
+    rows = [f"<b>{escape(title)}</b>"]
+    for name, mesh in scene.geometry.items():
+        material = getattr(mesh.visual, "material", None)
+        if isinstance(material, PBRMaterial) and material.name:
+            red, green, blue, _ = (int(part) for part in np.array(material.baseColorFactor))
+            patch = f'<span style="color:rgb({red},{green},{blue})">&#9632;</span>'
+            rows.append(f"{patch} {escape(name.removeprefix('walls:').replace('_', ' '))}")
+    style = f"position:absolute;left:12px;top:10px;{_FONT}"
+    return f'<div style="{style}">{"<br>".join(rows)}</div>'
+
+
+def save_scene(
+    scene: trimesh.Scene, path: str | Path, title: str = "rssnav", bar: ColourBar | None = None
+) -> None:
+    """Write a scene to a file.
+
+    Parameters
+    ----------
+    scene : trimesh.Scene
+    path : str or Path
+        Its suffix names the format: .glb or .html.
+    title : str
+        Of the page.
+    bar : ColourBar, optional
+        What the colours of lines mean, for the page.
+
+    Raises
+    ------
+    ValueError
+        For another suffix.
+    """
+    path = Path(path)
+    if path.suffix.lower() == ".glb":
+        path.write_bytes(export_glb(scene))
+    elif path.suffix.lower() == ".html":
+        path.write_text(scene_html(scene, title, bar), encoding="utf-8", newline="\n")
+    else:
+        raise ValueError(f"{path}: expected a name that ends in .glb or .html")
+
+
+def _material(name: str, rgba: NDArray[np.float64]) -> PBRMaterial:
+    return PBRMaterial(
+        name=name,
+        baseColorFactor=(255 * rgba).astype(np.uint8),
+        alphaMode="BLEND" if rgba[3] < 1.0 else "OPAQUE",
+        doubleSided=True,
+        metallicFactor=0.0,
+        roughnessFactor=0.9,
+    )
+
+
+def _mesh(triangles: Triangles) -> trimesh.Trimesh:
+    vertices = triangles.reshape(-1, 3)
+    faces = np.arange(len(vertices)).reshape(-1, 3)
+    return trimesh.Trimesh(vertices, faces, process=False)
+
+
+def _add(scene: trimesh.Scene, name: str, mesh: trimesh.Trimesh) -> None:
+    scene.add_geometry(mesh, node_name=name, geom_name=name, transform=Y_UP)
+
+
+def _tubes(segments: NDArray[np.float64], radius_m: float) -> NDArray[np.float64]:
+    """Sides of a thin prism around each segment (n, 2, 3): (n, 2 * sides, 3, 3)."""
+    along = segments[:, 1] - segments[:, 0]
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
+    helper = np.where(np.abs(along[:, 2:]) < 0.9, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
+    across = np.cross(along, helper)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    angle = np.arange(_TUBE_SIDES) * (2 * np.pi / _TUBE_SIDES)
+    turned = np.cross(along, across)
+    ring = radius_m * (
+        np.cos(angle)[:, None] * across[:, None] + np.sin(angle)[:, None] * turned[:, None]
+    )
+    near, far = segments[:, :1] + ring, segments[:, 1:] + ring
+    near_next, far_next = np.roll(near, -1, axis=1), np.roll(far, -1, axis=1)
+    lower = np.stack([near, near_next, far_next], axis=2)
+    upper = np.stack([near, far_next, far], axis=2)
+    return np.concatenate([lower, upper], axis=1)
+
+
+def _set_camera(scene: trimesh.Scene) -> None:
+    """Look down at the middle of the scene from the south, so that all of it is in sight."""
+    low, high = scene.bounds
+    distance = 0.5 * float(np.linalg.norm(high - low)) / np.tan(np.radians(FIELD_OF_VIEW_DEG / 2))
+    scene.set_camera(
+        angles=(np.radians(CAMERA_PITCH_DEG), 0.0, 0.0),
+        distance=distance,
+        center=(low + high) / 2,
+        fov=(FIELD_OF_VIEW_DEG, FIELD_OF_VIEW_DEG),
+    )

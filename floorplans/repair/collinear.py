@@ -1,0 +1,237 @@
+"""Walls that lie in one line: those that run along each other or go on from another become one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import hypot, radians, sin
+
+import shapely
+
+from floorplans.repair.moves import (
+    Change,
+    along_across,
+    direction,
+    moved_wall,
+    tidy_point,
+    wall_lines,
+)
+from floorplans.walls import TOLERANCE_M, Interval, Opening, Wall
+
+_MAX_SINE = sin(radians(3.0))
+"""Sine of the largest angle between walls of one line."""
+_THICKNESS_SHARE = 0.25
+"""Walls whose centre lines are nearer than this share of their thickness lie in one line."""
+_SAME_THICKNESS_M = 1e-3
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """A wall of a group, and the interval of the group's line it lies on [m]."""
+
+    wall: Wall
+    span: Interval
+
+
+def merge_lines(
+    walls: Sequence[Wall],
+    reach_m: float,
+    thickness_share: float,
+    changes: list[Change],
+    sideways_share: float = _THICKNESS_SHARE,
+) -> tuple[Wall, ...]:
+    """Make one wall of walls in a line, and let no two walls run along each other.
+
+    Parameters
+    ----------
+    walls : sequence of Wall
+    reach_m : float
+        Gaps in the line up to this width are closed, and walls moved sideways as far [m].
+    thickness_share : float
+        Walls are joined where their thicknesses differ by at most this share.
+    changes : list of Change
+        What is done is added here.
+    sideways_share : float
+        Share of its thickness by which a wall may besides be moved sideways.
+
+    Returns
+    -------
+    tuple of Wall
+    """
+    merged: list[Wall] = []
+    for group in sorted(_groups(walls, reach_m, sideways_share), key=min):
+        if len(group) == 1:
+            merged.append(walls[group[0]])
+        else:
+            merged += _one_line([walls[i] for i in group], reach_m, thickness_share, changes)
+    return tuple(merged)
+
+
+def _groups(walls: Sequence[Wall], reach_m: float, sideways_share: float) -> Iterator[list[int]]:
+    """Indices of the walls of each line, the longest wall first."""
+    lines = wall_lines(walls)
+    tree = shapely.STRtree(lines)
+    thickest = max((wall.thickness_m for wall in walls), default=0.0)
+    free = set(range(len(walls)))
+    for leader in sorted(free, key=lambda i: (-walls[i].length_m, i)):
+        if leader not in free:
+            continue
+        free.remove(leader)
+        group, todo = [leader], [leader]
+        while todo:
+            near = tree.query(
+                lines[todo.pop()], "dwithin", distance=reach_m + sideways_share * thickest
+            )
+            members = [i for i in sorted(near.tolist()) if i in free]
+            for i in members:
+                sideways_m = reach_m + sideways_share * min(
+                    walls[leader].thickness_m, walls[i].thickness_m
+                )
+                members_here = [walls[k] for k in group]
+                if _in_line(walls[leader], walls[i], members_here, reach_m, sideways_m):
+                    free.remove(i)
+                    group.append(i)
+                    todo.append(i)
+        yield group
+
+
+def _in_line(
+    leader: Wall, wall: Wall, group: Sequence[Wall], reach_m: float, sideways_m: float
+) -> bool:
+    """Whether a wall lies on the leader's line and touches the group, up to the reach."""
+    (ux, uy), (vx, vy) = direction(leader), direction(wall)
+    if abs(ux * vy - uy * vx) > _MAX_SINE:
+        return False
+    offsets = [along_across(leader, end) for end in (wall.start, wall.end)]
+    if max(abs(across) for _, across in offsets) > sideways_m:
+        return False
+    low, high = sorted(s for s, _ in offsets)
+    spans = (_span(leader, member) for member in group)
+    return any(low <= top + reach_m and high >= bottom - reach_m for bottom, top in spans)
+
+
+def _span(leader: Wall, wall: Wall) -> Interval:
+    low, high = sorted(along_across(leader, end)[0] for end in (wall.start, wall.end))
+    return (low, high)
+
+
+def _one_line(
+    group: Sequence[Wall], reach_m: float, thickness_share: float, changes: list[Change]
+) -> list[Wall]:
+    """Walls of one line, put on it, none over another; alike neighbours made one."""
+    leader = group[0]
+    pieces = [_Piece(wall, _span(leader, wall)) for wall in group]
+    runs = _joined(_owners(pieces, reach_m), thickness_share)
+    walls = [_wall_on(leader, span, owners, pieces) for span, owners in runs]
+    if _same(walls, group):
+        return list(group)
+    text = f"{len(group)} walls in one line made {len(walls)}"
+    changes.append(Change("joined", text, walls[0].start, walls[-1].end))
+    return walls
+
+
+def _owners(pieces: Sequence[_Piece], reach_m: float) -> Iterator[tuple[Interval, _Piece]]:
+    """Each stretch of the line and the thickest wall there; stretches up to the reach go along."""
+    stops = sorted({stop for piece in pieces for stop in piece.span})
+    last: tuple[Interval, _Piece] | None = None
+    for low, high in pairwise(stops):
+        middle = (low + high) / 2
+        here = [piece for piece in pieces if piece.span[0] <= middle <= piece.span[1]]
+        if not here and (last is None or high - low > reach_m):
+            continue
+        owner = max(here, key=_rank) if here else last[1] if last else pieces[0]
+        short = high - low <= reach_m and last is not None and last[0][1] == low
+        if last is not None and (short or owner is last[1]) and last[0][1] == low:
+            last = ((last[0][0], high), last[1])
+            continue
+        if last is not None:
+            yield last
+        last = ((low, high), owner)
+    if last is not None:
+        yield last
+
+
+def _rank(piece: _Piece) -> tuple[float, float, float]:
+    return (piece.wall.height_m, piece.wall.thickness_m, piece.wall.length_m)
+
+
+def _joined(
+    stretches: Iterator[tuple[Interval, _Piece]], thickness_share: float
+) -> list[tuple[Interval, list[tuple[float, Wall]]]]:
+    """Runs of stretches whose walls are alike, with the length each wall has in them."""
+    runs: list[tuple[Interval, list[tuple[float, Wall]]]] = []
+    for (low, high), piece in stretches:
+        share = (high - low, piece.wall)
+        if (
+            runs
+            and runs[-1][0][1] == low
+            and _alike(runs[-1][1][-1][1], piece.wall, thickness_share)
+        ):
+            runs[-1] = ((runs[-1][0][0], high), [*runs[-1][1], share])
+        else:
+            runs.append(((low, high), [share]))
+    return runs
+
+
+def _alike(a: Wall, b: Wall, thickness_share: float) -> bool:
+    allowed_m = max(_SAME_THICKNESS_M, thickness_share * max(a.thickness_m, b.thickness_m))
+    return (
+        a.material == b.material
+        and abs(a.height_m - b.height_m) < TOLERANCE_M
+        and abs(a.thickness_m - b.thickness_m) <= allowed_m
+    )
+
+
+def _wall_on(
+    leader: Wall, span: Interval, owners: list[tuple[float, Wall]], pieces: Sequence[_Piece]
+) -> Wall:
+    """Make the wall of a run, with the openings whose middles lie in it."""
+    start, end = (_point_on(leader, s) for s in span)
+    first = owners[0][1]
+    total_m = sum(length_m for length_m, _ in owners)
+    mean_m = sum(length_m * wall.thickness_m for length_m, wall in owners) / total_m
+    same = all(wall.thickness_m == first.thickness_m for _, wall in owners)
+    look = replace(first, thickness_m=first.thickness_m if same else round(mean_m, 3))
+    bare = replace(look, start=start, end=end, openings=())
+    parts = [_with_openings_on(piece.wall, bare) for piece in pieces]
+    return moved_wall([replace(look, openings=()), *parts], start, end)
+
+
+def _with_openings_on(wall: Wall, bare: Wall) -> Wall:
+    """Leave a wall the openings whose middles lie beside another wall."""
+
+    def beside(opening: Opening) -> bool:
+        middle = wall.point_at(opening.offset_m + opening.width_m / 2)
+        return 0 <= along_across(bare, middle)[0] <= bare.length_m
+
+    return replace(wall, openings=tuple(filter(beside, wall.openings)))
+
+
+def _point_on(leader: Wall, s: float) -> tuple[float, float]:
+    if abs(s) < TOLERANCE_M:
+        return leader.start
+    if abs(s - leader.length_m) < TOLERANCE_M:
+        return leader.end
+    ux, uy = direction(leader)
+    return tidy_point(leader.start[0] + s * ux, leader.start[1] + s * uy)
+
+
+def _same(walls: Sequence[Wall], group: Sequence[Wall]) -> bool:
+    """Whether each wall lies where one of the group does already, with the same look."""
+
+    def near(a: Wall, b: Wall) -> bool:
+        straight = max(_gap(a.start, b.start), _gap(a.end, b.end))
+        turned = max(_gap(a.start, b.end), _gap(a.end, b.start))
+        same_look = (a.material, a.thickness_m, a.height_m) == (
+            b.material,
+            b.thickness_m,
+            b.height_m,
+        )
+        return same_look and min(straight, turned) <= 2 * TOLERANCE_M
+
+    return len(walls) == len(group) and all(any(near(a, b) for b in group) for a in walls)
+
+
+def _gap(a: tuple[float, float], b: tuple[float, float]) -> float:
+    return hypot(a[0] - b[0], a[1] - b[1])

@@ -1,0 +1,285 @@
+"""The plan view cut into convex cells.
+
+Within a convex cell nothing stands between two points, so a beam that is followed from cell to
+cell through their edges needs no occlusion test. An edge of a cell is a wall, a partial wall
+(one that is open at some heights: a door, a window, a counter) or a portal, which is nothing
+but the cut between two cells.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from raytrace.errors import SceneError
+from raytrace.geometry.junctions import NEAR_M
+from raytrace.geometry.noding import Segment, Vertex, node
+from raytrace.geometry.sheets import OPEN, Panel, Profile, Sheets
+from raytrace.kernels.plan_view import PARTIAL, PORTAL, WALL, PlanView
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class CellComplex:
+    """The plan view as the kernels see it, and what it was made from.
+
+    Attributes
+    ----------
+    view
+        Convex cells and their edges as arrays.
+    vertices
+        (n, 2) [m].
+    wall_segments
+        The walls between vertices: (vertex, vertex, profile) of each.
+    """
+
+    view: PlanView
+    vertices: Floats
+    wall_segments: tuple[tuple[int, int, Profile], ...]
+
+
+def cut_into_cells(sheets: Sheets) -> CellComplex:
+    """Cut the footprint of a building into convex cells.
+
+    Raises
+    ------
+    SceneError
+        Where the walls do not enclose the footprint.
+    """
+    walls, cuts = node(sheets.panels, sheets.footprint)
+    faces = _faces([*walls, *cuts], sheets)
+    index: dict[Vertex, int] = {}
+    for a, b in [*walls, *cuts]:
+        index.setdefault(a, len(index))
+        index.setdefault(b, len(index))
+    rings = [ring for face in faces for ring in _triangles(face, index)]
+    vertices = np.array(list(index))
+    panel_of = {_undirected(index[a], index[b]): panel for (a, b), panel in walls.items()}
+    rings = _merge_convex(rings, vertices, panel_of)
+    outlines = [_outline(ring, vertices, panel_of) for ring in rings]
+    vertices = _unsnapped(vertices, sheets)
+    view = _plan_view(rings, outlines, vertices, sheets.planes)
+    segments = tuple((a, b, panel.profile) for (a, b), panel in panel_of.items())
+    return CellComplex(view, vertices, segments)
+
+
+def _unsnapped(vertices: Floats, sheets: Sheets) -> Floats:
+    """Put vertices back from the grid to where they were drawn, or onto the walls they are on."""
+    drawn = np.array([end for p in sheets.panels for end in (p.start, p.end)])
+    off, nearest = KDTree(drawn).query(vertices)
+    exact = np.where((off < 1e-11)[:, None], drawn[nearest], vertices)
+    for k in np.flatnonzero(off >= 1e-11):
+        away = sheets.planes[:, 2] - sheets.planes[:, :2] @ vertices[k]
+        on = np.abs(away) < 1e-11
+        if on.any():
+            exact[k] += np.linalg.lstsq(sheets.planes[on, :2], away[on])[0]
+    return exact
+
+
+def _faces(segments: list[Segment], sheets: Sheets) -> list[shapely.Polygon]:
+    """Polygons that the segments enclose within the footprint."""
+    lines = [shapely.LineString(segment) for segment in segments]
+    polygons = shapely.get_parts(shapely.polygonize(lines))
+    inside = [p for p in polygons if sheets.footprint.covers(p.representative_point())]
+    open_floor = sheets.footprint.difference(shapely.union_all(inside))
+    wide = open_floor.buffer(-NEAR_M)
+    if not wide.is_empty:
+        missing = wide.representative_point()
+        raise SceneError(
+            f"the walls do not enclose the floor around ({missing.x:g}, {missing.y:g}): "
+            f"{open_floor.area:.3f} m2 lie open"
+        )
+    return inside
+
+
+def _triangles(face: shapely.Polygon, index: dict[Vertex, int]) -> list[list[int]]:
+    """Constrained Delaunay triangles of a face, counter-clockwise, as vertex numbers."""
+    rings = []
+    for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(face)):
+        ring = shapely.get_coordinates(shapely.orient_polygons(triangle))[:3]
+        rings.append([index[(float(x), float(y))] for x, y in ring])
+    return rings
+
+
+def _undirected(a: int, b: int) -> tuple[int, int]:
+    return (a, b) if a < b else (b, a)
+
+
+def _merge_convex(
+    rings: list[list[int]], vertices: Floats, panel_of: dict[tuple[int, int], Panel]
+) -> list[list[int]]:
+    """Remove cuts, longest first, while both sides together stay convex (Hertel-Mehlhorn)."""
+    owner = {edge: k for k, ring in enumerate(rings) for edge in _edges(ring)}
+    cuts = [e for e in owner if e[0] < e[1] and e not in panel_of]
+    cuts.sort(key=lambda e: (-np.hypot(*(vertices[e[0]] - vertices[e[1]])), e))
+    alive = dict(enumerate(rings))
+    for a, b in cuts:
+        left, right = owner[a, b], owner[b, a]
+        if left == right:
+            continue
+        merged = _join(alive[left], alive[right], a, b)
+        corners = (merged.index(a), merged.index(b))
+        if len(set(merged)) < len(merged) or not all(
+            _convex_at(merged, c, vertices) for c in corners
+        ):
+            continue
+        alive[left] = merged
+        del alive[right], owner[a, b], owner[b, a]
+        owner.update(dict.fromkeys(_edges(merged), left))
+    return list(alive.values())
+
+
+def _edges(ring: list[int]) -> list[tuple[int, int]]:
+    return list(zip(ring, ring[1:] + ring[:1], strict=True))
+
+
+def _join(left: list[int], right: list[int], a: int, b: int) -> list[int]:
+    """One ring of two that share the edge a-b (left holds a -> b, right b -> a)."""
+    k, m = left.index(b), right.index(a)
+    from_b_to_a = left[k:] + left[:k]
+    from_a_to_b = right[m:] + right[:m]
+    return from_b_to_a[:-1] + from_a_to_b[:-1]
+
+
+def _turn(ring: list[int], k: int, vertices: Floats) -> tuple[float, float]:
+    """Sine and cosine, times lengths, of the turn at the k-th vertex of a ring."""
+    before, here, after = vertices[[ring[k - 1], ring[k], ring[(k + 1) % len(ring)]]]
+    u, v = here - before, after - here
+    scale = 1.0 / (np.hypot(*u) * np.hypot(*v))
+    return float(u[0] * v[1] - u[1] * v[0]) * scale, float(u @ v) * scale
+
+
+def _convex_at(ring: list[int], k: int, vertices: Floats) -> bool:
+    sine, cosine = _turn(ring, k, vertices)
+    return sine > 1e-9 or (sine > -1e-9 and cosine > 0.0)
+
+
+def _outline(
+    ring: list[int], vertices: Floats, panel_of: dict[tuple[int, int], Panel]
+) -> list[tuple[int, Panel | None]]:
+    """Return a cell's corners, each with the panel on the edge that starts there.
+
+    Collinear full walls of one material, which reflect as one, are joined.
+    """
+    panels = [panel_of.get(_undirected(a, b)) for a, b in _edges(ring)]
+
+    def is_corner(k: int) -> bool:
+        one, two = panels[k - 1], panels[k]
+        joined = (
+            one is not None
+            and two is not None
+            and one.profile.is_full
+            and (one.plane, one.profile) == (two.plane, two.profile)
+        )
+        return not (joined and abs(_turn(ring, k, vertices)[0]) <= 1e-9)
+
+    return [(ring[k], panels[k]) for k in range(len(ring)) if is_corner(k)]
+
+
+def _plan_view(
+    rings: list[list[int]],
+    outlines: list[list[tuple[int, Panel | None]]],
+    vertices: Floats,
+    planes: Floats,
+) -> PlanView:
+    """Arrays of the cells' edges, cell after cell, counter-clockwise."""
+    corners = [[v for v, _ in outline] for outline in outlines]
+    panels = [panel for outline in outlines for _, panel in outline]
+    ends = np.array([edge for ring in corners for edge in _edges(ring)], dtype=np.int64)
+    cell = np.repeat(np.arange(len(corners)), [len(ring) for ring in corners])
+    number = {(int(a), int(b)): k for k, (a, b) in enumerate(ends)}
+    twin = np.array([number.get((int(b), int(a)), -1) for a, b in ends], dtype=np.int64)
+    passable = np.array([p is None or OPEN in p.profile.materials for p in panels])
+    _refuse_open(passable & (twin < 0), vertices[ends])
+    profiles = list(dict.fromkeys(p.profile for p in panels if p is not None))
+    plane, line = _lines(panels, vertices[ends], planes)
+    kind = np.array([_kind(p) for p in panels], dtype=np.int64)
+    behind = _behind(rings, corners, kind)
+    return PlanView(
+        cell_edges=_offsets(corners),
+        ends=vertices[ends].reshape(-1, 4),
+        vertex=ends,
+        plane=plane,
+        line=line,
+        kind=kind,
+        profile=np.array([profiles.index(p.profile) if p else -1 for p in panels], dtype=np.int64),
+        twin=twin,
+        beyond=np.where(passable, cell[twin], -1),
+        behind_first=_offsets(behind),
+        behind=np.array([f for edges in behind for f in edges], dtype=np.int64),
+        cell_of=cell,
+        profile_bins=_offsets([p.tops for p in profiles]),
+        bin_top=np.array([t for p in profiles for t in p.tops]),
+        bin_material=np.array([m for p in profiles for m in p.materials], dtype=np.int64),
+    )
+
+
+def _behind(
+    rings: list[list[int]], corners: list[list[int]], kind: NDArray[np.int64]
+) -> list[list[int]]:
+    """For each edge that is a full wall, the edges of other cells at its back."""
+    owner: dict[tuple[int, int], int] = {}
+    first = 0
+    for ring, kept in zip(rings, corners, strict=True):
+        start = ring.index(kept[0])
+        number = first - 1
+        for a, b in _edges(ring[start:] + ring[:start]):
+            number += a in kept
+            owner[a, b] = number
+        first += len(kept)
+    behind: list[list[int]] = [[] for _ in kind]
+    for (a, b), edge in owner.items():
+        back = owner.get((b, a), -1)
+        if kind[edge] == WALL and back >= 0 and back not in behind[edge]:
+            behind[edge].append(back)
+    return behind
+
+
+def _offsets(groups: Sequence[Sequence[object]]) -> Ints:
+    """Return where each group starts when they are laid end to end, and the end."""
+    return np.cumsum([0, *(len(g) for g in groups)], dtype=np.int64)
+
+
+def _kind(panel: Panel | None) -> int:
+    if panel is None:
+        return PORTAL
+    return WALL if panel.profile.is_full else PARTIAL
+
+
+def _refuse_open(lost: NDArray[np.bool_], ends: Floats) -> None:
+    if lost.any():
+        (x1, y1), (x2, y2) = ends[lost][0]
+        raise SceneError(
+            f"the building is open from ({x1:g}, {y1:g}) to ({x2:g}, {y2:g}): "
+            "the outside walls must reach from floor to ceiling"
+        )
+
+
+def _lines(panels: list[Panel | None], ends: Floats, planes: Floats) -> tuple[Floats, Ints]:
+    """Line (n, 3) of each edge as normal and offset, and a number that collinear edges share."""
+    lines = [tuple(p) for p in planes]
+    plane = np.empty((len(panels), 3))
+    number = np.empty(len(panels), dtype=np.int64)
+    for k, panel in enumerate(panels):
+        if panel is not None:
+            number[k] = panel.plane
+        else:
+            number[k] = _line_through(ends[k], lines)
+        plane[k] = lines[number[k]]
+    return plane, number
+
+
+def _line_through(ends: Floats, lines: list[tuple[float, ...]]) -> int:
+    """Return the number of the line through two points, which is appended where it is new."""
+    known = np.array(lines).reshape(-1, 3)
+    off = np.abs(known[:, :2] @ ends.T - known[:, 2:]).max(axis=1)
+    if len(off) and off.min() < 1e-7:
+        return int(off.argmin())
+    u = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
+    lines.append((-u[1], u[0], float(-u[1] * ends[0, 0] + u[0] * ends[0, 1])))
+    return len(lines) - 1

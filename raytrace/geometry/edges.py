@@ -1,0 +1,163 @@
+"""Where a building diffracts: upright edges at wall ends and corners, level ones at lintels.
+
+An edge diffracts where the free space around it is more than half a turn. Upright edges are
+found height interval by height interval, so a door jamb ends at the lintel and a T-junction is
+no edge at all. A level edge is the rim of a wall over or under an opening: a half plane.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raytrace.geometry.cells import CellComplex
+from raytrace.geometry.sheets import OPEN, Profile
+from raytrace.kernels.plan_view import PARTIAL
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+TURN = 2.0 * np.pi
+
+STRAIGHT_RAD = 1e-6
+"""A wall that bends by less does not diffract [rad]: snapping bends short pieces (`noding`)."""
+
+
+@dataclass(frozen=True, eq=False)
+class UprightEdge:
+    """A wedge with a vertical edge.
+
+    Attributes
+    ----------
+    vertex
+        Its place in the plan view, as a vertex number.
+    x, y
+        The same [m].
+    o_face_azimuth
+        Direction of the o-face [rad]; the free space lies counter-clockwise of it.
+    wedge_n
+        Free angle over pi.
+    o_material, n_material
+        Slab of the o-face and of the n-face.
+    z_low, z_high
+        Heights between which the edge stands [m].
+    cells
+        (n,) cells of the plan view in the free space at the edge.
+    """
+
+    vertex: int
+    x: float
+    y: float
+    o_face_azimuth: float
+    wedge_n: float
+    o_material: int
+    n_material: int
+    z_low: float
+    z_high: float
+    cells: Ints
+
+
+@dataclass(frozen=True)
+class LevelEdge:
+    """The horizontal rim of a wall: a half plane.
+
+    Attributes
+    ----------
+    plan_edges
+        The cell edges it runs along, one from each side.
+    z
+        Its height [m].
+    wall_above
+        Whether the wall is above it (a lintel) or below (a sill, a counter).
+    material
+        Slab of the wall.
+    """
+
+    plan_edges: tuple[int, int]
+    z: float
+    wall_above: bool
+    material: int
+
+
+class _Wedge(NamedTuple):
+    o_face: float
+    angle: float
+    o_material: int
+    n_material: int
+
+
+def find_upright_edges(cells: CellComplex, height_m: float) -> tuple[UprightEdge, ...]:
+    """Return every vertical edge of a building that diffracts."""
+    walls_at: dict[int, list[tuple[float, Profile]]] = {}
+    for a, b, profile in cells.wall_segments:
+        dx, dy = cells.vertices[b] - cells.vertices[a]
+        walls_at.setdefault(a, []).append((float(np.arctan2(dy, dx)), profile))
+        walls_at.setdefault(b, []).append((float(np.arctan2(-dy, -dx)), profile))
+    around = _cells_around(cells)
+    return tuple(
+        edge
+        for vertex, walls in sorted(walls_at.items())
+        for edge in _edges_at(vertex, walls, height_m, around.get(vertex, []), cells)
+    )
+
+
+def _cells_around(cells: CellComplex) -> dict[int, list[tuple[int, float]]]:
+    """For each vertex, the cells that have it as a corner and the azimuth of their inside."""
+    view = cells.view
+    around: dict[int, list[tuple[int, float]]] = {}
+    for cell, (first, last) in enumerate(pairwise(view.cell_edges.tolist())):
+        middle = view.ends[first:last, :2].mean(axis=0)
+        for vertex in view.vertex[first:last, 0].tolist():
+            dx, dy = middle - cells.vertices[vertex]
+            around.setdefault(vertex, []).append((cell, float(np.arctan2(dy, dx))))
+    return around
+
+
+def _edges_at(
+    vertex: int,
+    walls: list[tuple[float, Profile]],
+    height_m: float,
+    around: list[tuple[int, float]],
+    cells: CellComplex,
+) -> Iterator[UprightEdge]:
+    x, y = cells.vertices[vertex]
+    levels = sorted({0.0, height_m} | {t for _, profile in walls for t in profile.tops})
+    standing: list[tuple[_Wedge, float, float]] = []
+    for z_low, z_high in pairwise(levels):
+        below = {wedge: low for wedge, low, high in standing if high == z_low}
+        wedges = list(_wedges(walls, 0.5 * (z_low + z_high)))
+        standing = [s for s in standing if s[2] < z_low or s[0] not in wedges]
+        standing += [(wedge, below.get(wedge, z_low), z_high) for wedge in wedges]
+    for wedge, z_low, z_high in standing:
+        inside = [c for c, azimuth in around if (azimuth - wedge.o_face) % TURN < wedge.angle]
+        if inside:
+            yield UprightEdge(
+                vertex, float(x), float(y), wedge.o_face, wedge.angle / np.pi,
+                wedge.o_material, wedge.n_material, z_low, z_high, np.array(inside, np.int64),
+            )  # fmt: skip
+
+
+def _wedges(walls: list[tuple[float, Profile]], z: float) -> Iterator[_Wedge]:
+    """Free sectors of more than half a turn between the walls that stand at height z."""
+    solid = sorted((azimuth, m) for azimuth, p in walls if (m := p.at(z)) != OPEN)
+    for (start, o_material), (end, n_material) in zip(solid, solid[1:] + solid[:1], strict=True):
+        angle = end - start if end > start else end - start + TURN
+        if angle > np.pi + STRAIGHT_RAD:
+            yield _Wedge(start, angle, o_material, n_material)
+
+
+def find_level_edges(cells: CellComplex) -> tuple[LevelEdge, ...]:
+    """Return every horizontal rim of a wall over or under an opening."""
+    view = cells.view
+    edges: list[LevelEdge] = []
+    for e in np.flatnonzero((view.kind == PARTIAL) & (view.twin > np.arange(len(view.twin)))):
+        bins = slice(view.profile_bins[view.profile[e]], view.profile_bins[view.profile[e] + 1])
+        materials = view.bin_material[bins].tolist()
+        for z, (below, above) in zip(view.bin_top[bins], pairwise(materials), strict=False):
+            if (below == OPEN) != (above == OPEN):
+                sides = (int(e), int(view.twin[e]))
+                edges.append(LevelEdge(sides, float(z), above != OPEN, max(below, above)))
+    return tuple(edges)

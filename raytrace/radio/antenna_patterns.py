@@ -1,0 +1,190 @@
+"""Antennas given by a table of their pattern: from arrays, or from a CSV file."""
+
+import csv
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import RegularGridInterpolator
+
+from raytrace.errors import AntennaError
+from raytrace.radio.antennas import Amplitudes
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+ANGLE_KEYS = ("theta_deg", "phi_deg")
+GAIN_KEYS = ("gain_dbi", "gain_theta_dbi", "gain_phi_dbi")
+PHASE_KEYS = ("phase_theta_deg", "phase_phi_deg")
+TOLERANCE_DEG = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class PatternTable:
+    """An antenna whose field is known on a grid of directions, interpolated linearly between.
+
+    Amplitudes are relative to a 0 dBi radiator: the sum of their squared
+    magnitudes is the gain. Nothing is normalised; `mean_gain` of a lossless antenna is 1.
+
+    Attributes
+    ----------
+    theta_deg
+        (n_theta,) rising from 0, the zenith, to 180 [deg].
+    phi_deg
+        (n_phi,) rising from 0, +x, towards +y to 360 [deg].
+    e_theta, e_phi
+        (n_theta, n_phi) complex amplitudes along theta-hat and phi-hat, for e^(+j omega t).
+    name
+        What it is called where it is described.
+    """
+
+    theta_deg: Floats
+    phi_deg: Floats
+    e_theta: Complexes
+    e_phi: Complexes
+    name: str = "pattern table"
+
+    def __post_init__(self) -> None:
+        """Check the grid; raise `AntennaError` where it does not cover the sphere."""
+        shape = (len(self.theta_deg), len(self.phi_deg))
+        for key, values, last in (
+            ("theta_deg", self.theta_deg, 180.0),
+            ("phi_deg", self.phi_deg, 360.0),
+        ):
+            ends = np.abs(np.array([values[0], values[-1]]) - (0.0, last))
+            if not (np.diff(values) > 0.0).all() or ends.max() > TOLERANCE_DEG:
+                raise AntennaError(
+                    f"{self.name}: {key} runs from {values[0]:g} to {values[-1]:g}: expected "
+                    f"rising values from 0 to {last:g}"
+                )
+        for key, values in (("e_theta", self.e_theta), ("e_phi", self.e_phi)):
+            if values.shape != shape or not np.isfinite(values).all():
+                raise AntennaError(
+                    f"{self.name}: {key} of shape {values.shape}: expected finite numbers {shape}"
+                )
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another antenna has the same table."""
+        return isinstance(other, PatternTable) and all(
+            np.array_equal(getattr(self, key), getattr(other, key))
+            for key in ("theta_deg", "phi_deg", "e_theta", "e_phi")
+        )
+
+    def __hash__(self) -> int:
+        """Equal tables have equal hashes."""
+        return hash((self.e_theta.tobytes(), self.e_phi.tobytes()))
+
+    @classmethod
+    def of_gain(
+        cls, theta_deg: ArrayLike, phi_deg: ArrayLike, gain_dbi: ArrayLike, name: str = "gain table"
+    ) -> "PatternTable":
+        """Make an antenna of a gain [dBi] (n_theta, n_phi), polarised upright and without phase."""
+        amplitude = np.asarray(10.0 ** (np.asarray(gain_dbi) / 20.0), dtype=np.complex128)
+        theta, phi = (np.asarray(angle, dtype=np.float64) for angle in (theta_deg, phi_deg))
+        return cls(theta, phi, -amplitude, np.zeros_like(amplitude), name)
+
+    @classmethod
+    def from_csv(cls, path: str | Path) -> "PatternTable":
+        """Read a pattern from a CSV file with a line of headings.
+
+        Parameters
+        ----------
+        path
+            Columns ``theta_deg`` and ``phi_deg``, and either ``gain_dbi`` (polarised upright) or
+            ``gain_theta_dbi`` and ``gain_phi_dbi``, these two with ``phase_theta_deg`` and
+            ``phase_phi_deg`` if wanted. A line for every pair of angles, in any order.
+
+        Raises
+        ------
+        AntennaError
+            For a file that cannot be read so; the message names file, line and column.
+        """
+        columns = _read_columns(Path(path))
+        theta, phi = (np.unique(columns[key]) for key in ANGLE_KEYS)
+        order = _grid_order(columns, theta, phi, Path(path))
+        grids = {
+            key: column[order].reshape(len(theta), len(phi)) for key, column in columns.items()
+        }
+        if "gain_dbi" in grids:
+            return cls.of_gain(theta, phi, grids["gain_dbi"], Path(path).name)
+        return cls(theta, phi, _field(grids, "theta"), _field(grids, "phi"), Path(path).name)
+
+    @property
+    def mean_gain(self) -> float:
+        """Gain averaged over the sphere, the radiated share of the power fed; 1 without loss."""
+        theta, phi = np.radians(self.theta_deg), np.radians(self.phi_deg)
+        gain = np.abs(self.e_theta) ** 2 + np.abs(self.e_phi) ** 2
+        around = np.trapezoid(gain, phi, axis=1)
+        return float(np.trapezoid(around * np.sin(theta), theta) / (4.0 * np.pi))
+
+    def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
+        """Field amplitudes towards directions; see `raytrace.radio.antennas.Antenna.amplitudes`."""
+        theta = np.degrees(np.arccos(np.clip(sine, -1.0, 1.0)))
+        at = np.stack([theta, np.degrees(azimuth) % 360.0], axis=-1)
+        fields = np.stack([-self.e_theta, self.e_phi], axis=-1)
+        found = RegularGridInterpolator((self.theta_deg, self.phi_deg), fields)(at)
+        return Amplitudes(found[..., 0], found[..., 1])
+
+    def describe(self) -> str:
+        """Name and size in one line."""
+        n_theta, n_phi = self.e_theta.shape
+        return f"{self.name}, {n_theta} x {n_phi} directions, mean gain {self.mean_gain:.3g}"
+
+
+def _field(grids: dict[str, Floats], part: str) -> Complexes:
+    """Complex amplitudes of one component, from its gain [dBi] and its phase [deg] if given."""
+    amplitude = 10.0 ** (grids[f"gain_{part}_dbi"] / 20.0)
+    phase = np.radians(grids.get(f"phase_{part}_deg", np.zeros(1)))
+    return np.asarray(amplitude * np.exp(1j * phase), dtype=np.complex128)
+
+
+def _read_columns(path: Path) -> dict[str, Floats]:
+    """Columns of a pattern file by their headings."""
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+    except (OSError, UnicodeDecodeError) as error:
+        raise AntennaError(f"{path}: the file cannot be read: {error}") from error
+    keys = tuple(rows[0]) if rows else ()
+    known = (*ANGLE_KEYS, *GAIN_KEYS, *PHASE_KEYS)
+    both = {"gain_theta_dbi", "gain_phi_dbi"} <= set(keys)
+    if (
+        not set(ANGLE_KEYS) <= set(keys)
+        or not set(keys) <= set(known)
+        or both == ("gain_dbi" in keys)
+    ):
+        raise AntennaError(
+            f"{path}: columns {', '.join(keys) or 'none'}: expected theta_deg, phi_deg and either "
+            "gain_dbi, or gain_theta_dbi and gain_phi_dbi with phase_theta_deg, phase_phi_deg"
+        )
+    return {key: _numbers(path, key, [row[key] for row in rows]) for key in keys}
+
+
+def _numbers(path: Path, key: str, texts: list[str]) -> Floats:
+    """Numbers of a column; -inf dBi, a null, is taken as -400."""
+    numbers = np.empty(len(texts))
+    for line, text in enumerate(texts, 2):
+        try:
+            numbers[line - 2] = max(float(text), -400.0)
+        except (TypeError, ValueError):
+            raise AntennaError(
+                f"{path}, line {line}: {key} = {text!r}: expected a number"
+            ) from None
+    return numbers
+
+
+def _grid_order(
+    columns: dict[str, Floats], theta: Floats, phi: Floats, path: Path
+) -> NDArray[np.int64]:
+    """Line of each pair of angles, phi running fastest."""
+    pairs = zip(columns["theta_deg"], columns["phi_deg"], strict=True)
+    line_of = {pair: line for line, pair in enumerate(pairs)}
+    for pair in product(theta, phi):
+        if pair not in line_of:
+            raise AntennaError(
+                f"{path}: no line for theta_deg = {pair[0]:g}, phi_deg = {pair[1]:g}: expected "
+                f"every pair of the {len(theta)} and {len(phi)} angles once"
+            )
+    return np.array([line_of[pair] for pair in product(theta, phi)])

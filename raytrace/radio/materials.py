@@ -1,0 +1,296 @@
+"""Building materials, and what a wall of them does to a plane wave.
+
+A material is a `Dielectric` with a permittivity over frequency, a `Layered` stack of dielectrics,
+or one of two ideals: `PERFECT_CONDUCTOR` and `ABSORBER`. The built-in dielectrics are those of
+Recommendation ITU-R P.2040, in the edition asked for (`raytrace.radio.itu`, docs/materials.md).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raytrace.constants import TWO_PI, VACUUM_PERMITTIVITY
+from raytrace.errors import SceneError
+from raytrace.radio.itu import DEFAULT_EDITION, TABLES, Row
+from raytrace.radio.slabs import SlabCoefficients, slab_coefficients, stack_coefficients
+
+Floats = NDArray[np.float64]
+
+MATERIAL_EDITION = DEFAULT_EDITION
+"""The edition of ITU-R P.2040 that holds where none is asked for."""
+
+
+@dataclass(frozen=True)
+class Dielectric:
+    """A homogeneous material: permittivity and conductivity over frequency.
+
+    Attributes
+    ----------
+    name
+        Its name in a floor plan.
+    rows
+        ``eps_r = a f^b`` and ``sigma = c f^d`` [S/m], f in GHz, each for a range of frequencies;
+        where ranges overlap the first counts.
+    origin
+        Who says so, for messages.
+    """
+
+    name: str
+    rows: tuple[Row, ...]
+    origin: str = ""
+
+    @classmethod
+    def of_law(
+        cls, name: str, a: float, b: float = 0.0, c: float = 0.0, d: float = 0.0
+    ) -> "Dielectric":
+        """Make a material that follows one law at all frequencies."""
+        return cls(name, (Row(0.0, inf, a, b, c, d),))
+
+    def complex_permittivity(self, frequency_hz: float) -> complex:
+        """Relative permittivity eps_r - j sigma / (omega eps_0), for e^(+j omega t).
+
+        Raises
+        ------
+        SceneError
+            With the ranges in which the material is known, for a frequency in none of them.
+        """
+        f_ghz = frequency_hz * 1e-9
+        for row in self.rows:
+            if row.low_ghz <= f_ghz <= row.high_ghz:
+                sigma = row.c * f_ghz**row.d
+                loss = sigma / (TWO_PI * frequency_hz * VACUUM_PERMITTIVITY)
+                return complex(row.a * f_ghz**row.b, -loss)
+        ranges = ", ".join(f"{row.low_ghz:g} to {row.high_ghz:g} GHz" for row in self.rows)
+        raise SceneError(
+            f"{self.name} at {f_ghz:g} GHz: {self.origin or 'it'} knows it at {ranges}; "
+            "choose such a frequency, another edition, or a material of your own"
+        )
+
+    def coefficients(
+        self, thickness_m: float, frequency_hz: float, cos_incidence: Floats
+    ) -> SlabCoefficients:
+        """Reflection and transmission of a slab of it in air."""
+        permittivity = self.complex_permittivity(frequency_hz)
+        return slab_coefficients(permittivity, thickness_m, frequency_hz, cos_incidence)
+
+
+class Layer(NamedTuple):
+    """One layer of a stack: its material and its thickness [m]."""
+
+    material: Dielectric
+    thickness_m: float
+
+
+@dataclass(frozen=True)
+class Layered:
+    """Layers one behind the other, the first one met first; plasterboard, air, plasterboard.
+
+    Attributes
+    ----------
+    name
+        Its name in a floor plan.
+    layers
+        At least one.
+    """
+
+    name: str
+    layers: tuple[Layer, ...]
+
+    @property
+    def thickness_m(self) -> float:
+        """Of all layers [m]."""
+        return sum(layer.thickness_m for layer in self.layers)
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether both sides reflect alike, as those of a wall must."""
+        return self.layers == self.layers[::-1]
+
+    def coefficients(
+        self, thickness_m: float, frequency_hz: float, cos_incidence: Floats
+    ) -> SlabCoefficients:
+        """Reflection and transmission in air; the thickness is that of the layers."""
+        stack = [(m.complex_permittivity(frequency_hz), d) for m, d in self.layers]
+        return stack_coefficients(stack, frequency_hz, cos_incidence)
+
+
+@dataclass(frozen=True)
+class Ideal:
+    """A surface that reflects the same share at every angle and lets nothing through.
+
+    Attributes
+    ----------
+    name
+        Its name in a floor plan.
+    reflection
+        R_tm, and the negative of R_te: 1 of a perfect conductor, 0 of an absorber.
+    """
+
+    name: str
+    reflection: float
+
+    def coefficients(
+        self, thickness_m: float, frequency_hz: float, cos_incidence: Floats
+    ) -> SlabCoefficients:
+        """Reflection and transmission, whatever the thickness and the frequency."""
+        reflected = np.full(np.shape(cos_incidence), self.reflection, dtype=np.complex128)
+        nothing = np.zeros_like(reflected)
+        return SlabCoefficients(-reflected, reflected, nothing, nothing)
+
+
+Material = Dielectric | Layered | Ideal
+
+PERFECT_CONDUCTOR = Ideal("perfect_conductor", 1.0)
+ABSORBER = Ideal("absorber", 0.0)
+VACUUM = Dielectric.of_law("vacuum", 1.0)
+AIR = Dielectric.of_law("air", 1.0)
+ANY_EDITION: dict[str, Material] = {m.name: m for m in (VACUUM, AIR, PERFECT_CONDUCTOR, ABSORBER)}
+"""Materials that no edition has a say about: vacuum and air at all frequencies, and the ideals."""
+
+
+def dielectrics_of(edition: str = DEFAULT_EDITION) -> dict[str, Dielectric]:
+    """Materials of an edition of ITU-R P.2040 by name, vacuum and air among them.
+
+    Raises
+    ------
+    SceneError
+        With the editions there are, for another one.
+    """
+    if edition not in TABLES:
+        raise SceneError(
+            f"no edition {edition!r} of the material table: there are {', '.join(TABLES)}"
+        )
+    rows = TABLES[edition]
+    of_table = {name: Dielectric(name, rows[name], f"ITU-R {edition}") for name in rows}
+    return {**of_table, "vacuum": VACUUM, "air": AIR}
+
+
+MATERIALS: dict[str, Dielectric] = dielectrics_of()
+"""The built-in dielectrics of the default edition."""
+
+MATERIAL_NAMES: tuple[str, ...] = tuple(dict.fromkeys((*MATERIALS, *ANY_EDITION)))
+"""All built-in names; earlier editions lack some of them."""
+
+
+def find_material(name: str, edition: str = DEFAULT_EDITION) -> Material:
+    """Return the built-in material of that name.
+
+    Raises
+    ------
+    SceneError
+        With the nearest known name, where the edition has none.
+    """
+    known: dict[str, Material] = {**dielectrics_of(edition), **ANY_EDITION}
+    if name in known:
+        return known[name]
+    if name in MATERIAL_NAMES:
+        raise SceneError(f"ITU-R {edition} has no {name!r}: it has {', '.join(known)}")
+    near = get_close_matches(name, known, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    raise SceneError(f"unknown material {name!r}: {hint}known are {', '.join(known)}")
+
+
+class Slab(NamedTuple):
+    """What a wall, floor or ceiling is made of: a material and its thickness [m]."""
+
+    material: Material
+    thickness_m: float
+
+    @classmethod
+    def of(
+        cls, material: Material | str, thickness_m: float, edition: str = DEFAULT_EDITION
+    ) -> "Slab":
+        """Make a slab; a name means the built-in material.
+
+        Raises
+        ------
+        SceneError
+            For an unknown name, and a thickness out of range or not that of the layers.
+        """
+        if isinstance(material, str):
+            material = find_material(material, edition)
+        if not 0.0 < thickness_m < 10.0:
+            raise SceneError(f"{material.name} of thickness {thickness_m} m: expected 0 to 10 m")
+        if isinstance(material, Layered) and abs(material.thickness_m - thickness_m) > 1e-6:
+            raise SceneError(
+                f"{material.name} of thickness {thickness_m:g} m: its layers are "
+                f"{material.thickness_m:g} m thick together"
+            )
+        return cls(material, float(thickness_m))
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether both sides reflect alike."""
+        return not isinstance(self.material, Layered) or self.material.is_symmetric
+
+
+SLAB_TABLE_STEPS = 4096
+
+
+def slab_tables(slabs: Sequence[tuple[Material | str, float]], frequency_hz: float) -> Floats:
+    """Tabulate the reflection of each slab over the cosine of incidence, for the kernels.
+
+    Parameters
+    ----------
+    slabs
+        (material or built-in name, thickness [m]) of each.
+    frequency_hz
+        Frequency [Hz].
+
+    Returns
+    -------
+    ndarray
+        (n_slabs, SLAB_TABLE_STEPS + 2, 4): real and imaginary parts of R_tm and of
+        (R_te + R_tm) / sin^2 theta, at cosines 0, 1/n, ..., 1 and once more. The second is
+        what mixes the polarisations (docs/theory.md, eq. 12); it is smooth at normal incidence.
+
+    Raises
+    ------
+    SceneError
+        Where a material is not known at that frequency.
+    """
+    return np.stack([_table(c.r_tm, c.r_te + c.r_tm) for c in _at_all_angles(slabs, frequency_hz)])
+
+
+def transmission_tables(
+    slabs: Sequence[tuple[Material | str, float]], frequency_hz: float
+) -> Floats:
+    """Tabulate the transmission of each slab like its reflection in `slab_tables`.
+
+    Returns
+    -------
+    ndarray
+        (n_slabs, SLAB_TABLE_STEPS + 2, 4): real and imaginary parts of T_tm and of
+        (T_te - T_tm) / sin^2 theta, at the cosines of `slab_tables`; docs/theory.md, eqs. 28-30.
+        T is relative to free space across the same thickness, so that a slab of vacuum has
+        T = 1: a ray goes straight on through the sheet, and its length holds the phase.
+    """
+    return np.stack([_table(c.t_tm, c.t_te - c.t_tm) for c in _at_all_angles(slabs, frequency_hz)])
+
+
+def _at_all_angles(
+    slabs: Sequence[tuple[Material | str, float]], frequency_hz: float
+) -> list[SlabCoefficients]:
+    """Coefficients at the cosines of the tables, transmission relative to air."""
+    cos_i = np.linspace(0.0, 1.0, SLAB_TABLE_STEPS + 1)
+    found: list[SlabCoefficients] = []
+    for material, thickness_m in slabs:
+        slab = Slab.of(material, thickness_m)
+        c = slab.material.coefficients(thickness_m, frequency_hz, cos_i)
+        found.append(c.relative_to_air(thickness_m, frequency_hz, cos_i))
+    return found
+
+
+def _table(tm: NDArray[np.complex128], difference: NDArray[np.complex128]) -> Floats:
+    """Columns (steps + 2, 4) of a coefficient and of a difference over sin^2 theta."""
+    sin2 = 1.0 - np.linspace(0.0, 1.0, len(tm)) ** 2
+    mix = np.empty_like(tm)
+    mix[:-1] = difference[:-1] / sin2[:-1]
+    mix[-1] = 2.0 * mix[-2] - mix[-3]
+    columns = np.column_stack([tm.real, tm.imag, mix.real, mix.imag])
+    return np.concatenate([columns, columns[-1:]])

@@ -1,0 +1,44 @@
+"""The transmitter: where it is, how strong, at which frequency."""
+
+from dataclasses import dataclass, field
+
+from raytrace.constants import SPEED_OF_LIGHT
+from raytrace.radio.antennas import Antenna, HalfWaveDipole
+
+
+@dataclass(frozen=True)
+class Transmitter:
+    """A point source of radio waves.
+
+    Attributes
+    ----------
+    position
+        (x, y, z) [m]; z above the floor.
+    power_dbm
+        Power fed to the antenna [dBm].
+    frequency_hz
+        Carrier frequency [Hz].
+    antenna
+        Its pattern, peak gain included.
+    """
+
+    position: tuple[float, float, float]
+    power_dbm: float = 25.0
+    frequency_hz: float = 2.4e9
+    antenna: Antenna = field(default_factory=HalfWaveDipole)
+
+    def __post_init__(self) -> None:
+        """Check the numbers; raise ValueError where one cannot be."""
+        position = tuple(float(c) for c in self.position)
+        if len(position) != 3 or not all(abs(c) < float("inf") for c in position):
+            raise ValueError(f"position = {self.position}: expected three finite numbers [m]")
+        object.__setattr__(self, "position", position)
+        if not abs(self.power_dbm) < float("inf"):
+            raise ValueError(f"power_dbm = {self.power_dbm}: expected a finite number")
+        if not 0.0 < self.frequency_hz < float("inf"):
+            raise ValueError(f"frequency_hz = {self.frequency_hz}: expected a positive number")
+
+    @property
+    def wavelength_m(self) -> float:
+        """Free-space wavelength [m]."""
+        return SPEED_OF_LIGHT / self.frequency_hz

@@ -1,0 +1,143 @@
+"""A radio map: what a receiver in each cell of a grid reads, and how it was made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raytrace.extras import needs_extra
+from raytrace.grid import Grid, TraceConfig
+from raytrace.radio.transmitter import Transmitter
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+
+
+class LayerInfo(NamedTuple):
+    """What a layer of a map is: its unit, its name in words, and whether every map has it."""
+
+    units: str
+    long_name: str
+    required: bool = False
+
+
+LAYERS: dict[str, LayerInfo] = {
+    "rss_dbm": LayerInfo("dBm", "received signal strength, sum of the paths' powers", True),
+    "rss_coherent_dbm": LayerInfo(
+        "dBm", "received signal strength, power of the sum of the paths' fields", True
+    ),
+    "path_count": LayerInfo("1", "number of paths", True),
+    "strongest_path_dbm": LayerInfo("dBm", "power of the strongest path"),
+    "mean_delay_s": LayerInfo("s", "mean delay, weighted with power"),
+    "delay_spread_s": LayerInfo("s", "RMS delay spread, weighted with power"),
+    "angular_spread": LayerInfo("1", "azimuth spread of arrival after Fleury, 0 to 1"),
+    "k_factor_db": LayerInfo("dB", "power of the strongest path over that of all others"),
+    "left_out_db": LayerInfo("dB", "bound on the level of what was left out over the RSS"),
+}
+"""The fields of a `RadioMap` that hold a value a cell, in the order they are stored in."""
+
+
+@dataclass(frozen=True, eq=False)
+class RadioMap:
+    """Received signal strength over a grid, and what else was asked for.
+
+    A layer that was not computed is None. `raytrace.PathStatistics` says what the layers mean.
+
+    Attributes
+    ----------
+    rss_dbm
+        (n_y, n_x) sum of the paths' powers [dBm]; -inf where no path arrives.
+    rss_coherent_dbm
+        (n_y, n_x) power of the sum of the paths' fields [dBm]; -inf where no path arrives.
+    path_count
+        (n_y, n_x) number of paths, int64.
+    grid, transmitter, config
+        What the map was made with.
+    plan_text, plan_sha256
+        The floor plan's whole text and its hash; empty for a scene without a plan.
+    provenance
+        Material edition, software versions, wall time and the like.
+    strongest_path_dbm
+        (n_y, n_x) power of the strongest path [dBm]; -inf where no path arrives.
+    mean_delay_s, delay_spread_s
+        (n_y, n_x) mean delay and RMS delay spread [s]; 0 where no path arrives.
+    angular_spread
+        (n_y, n_x) spread of the azimuths of arrival after Fleury, 0 to 1.
+    k_factor_db
+        (n_y, n_x) strongest path over the sum of all others [dB]; inf for a single path, -inf
+        where no path arrives.
+    left_out_db
+        (n_y, n_x) bound on the power of paths that a limit left out, over the RSS [dB]; -inf where
+        nothing was left out.
+    """
+
+    rss_dbm: Floats
+    rss_coherent_dbm: Floats
+    path_count: NDArray[np.int64]
+    grid: Grid
+    transmitter: Transmitter
+    config: TraceConfig
+    plan_text: str = ""
+    plan_sha256: str = ""
+    provenance: dict[str, Any] = field(default_factory=dict[str, Any])
+    strongest_path_dbm: Floats | None = None
+    mean_delay_s: Floats | None = None
+    delay_spread_s: Floats | None = None
+    angular_spread: Floats | None = None
+    k_factor_db: Floats | None = None
+    left_out_db: Floats | None = None
+
+    @property
+    def layers(self) -> dict[str, NDArray[Any]]:
+        """The layers there are, by name, in the order of `LAYERS`."""
+        found = {name: getattr(self, name) for name in LAYERS}
+        return {name: layer for name, layer in found.items() if layer is not None}
+
+    def with_plan(self, text: str, sha256: str) -> RadioMap:
+        """Return the same map, marked as the map of a plan."""
+        return replace(self, plan_text=text, plan_sha256=sha256)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the map as a data set; xarray is needed (``pip install "rssnav[data]"``).
+
+        Returns
+        -------
+        xarray.Dataset
+            A variable (y, x) a layer, with `units` and `long_name`; coordinates `x` and `y` of the
+            cell centres [m] and `z` of the receivers; what made the map as attributes.
+        """
+        with needs_extra("data"):
+            import xarray as xr
+        from raytrace.results.map_file import attributes_of
+
+        centre = "{} of the cell centres"
+        coords = {
+            "y": ("y", self.grid.y, {"units": "m", "long_name": centre.format("y")}),
+            "x": ("x", self.grid.x, {"units": "m", "long_name": centre.format("x")}),
+            "z": ((), self.grid.height_m, {"units": "m", "long_name": "height of the receivers"}),
+        }
+        layers = {
+            name: (("y", "x"), layer, LAYERS[name]._asdict()) for name, layer in self.layers.items()
+        }
+        for _, _, attributes in layers.values():
+            del attributes["required"]
+        return xr.Dataset(layers, coords, attributes_of(self))
+
+    def save(self, path: str | Path) -> None:
+        """Write to HDF5, whole or not at all (see `raytrace.results.map_file`)."""
+        from raytrace.results.map_file import save_radio_map
+
+        save_radio_map(self, Path(path))
+
+    @classmethod
+    def load(cls, path: str | Path) -> RadioMap:
+        """Read from HDF5; raise `MapFileError` where the file is not a whole map."""
+        from raytrace.results.map_file import load_radio_map
+
+        return load_radio_map(Path(path))

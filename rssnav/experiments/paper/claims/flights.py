@@ -1,0 +1,149 @@
+"""Claims about the final flights."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.experiments.paper.claims.comparing import agents_alike, agents_differ, place
+from rssnav.experiments.paper.claims.verdicts import Case, Claim, between, case, undecided
+from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS, PaperData, flights, terminal_states
+from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
+from rssnav.experiments.paper.shortest_flights import shortest_flights
+from rssnav.experiments.statistics import difference, mean
+from rssnav.results import TrainingResult
+from rssnav.world import GridWorld
+
+SHOWN_SPEED = 1
+"""Speed of the paper's trajectory figure [m/s]."""
+
+WEAK_SHARE = 0.25
+"""A cell is weak when its RSS is among this lowest share of the reachable cells."""
+
+FLIGHTS_DRAWN = 500
+"""Shortest flights that trajectories are compared with."""
+
+Flights = Sequence[NDArray[np.integer]]
+"""States (n + 1,) of each of some flights."""
+
+_CLOSE = max(
+    max(ratio, 1.0 / ratio)
+    for key, rss_m in PATH_LENGTH_M.items()
+    if key.agent == "rss"
+    for ratio in [rss_m / PATH_LENGTH_M[type(key)(key.scenario, "location", key.speed)]]
+)
+"""The widest ratio of lengths in the paper's own table, which it calls very close."""
+
+
+def mean_rss_dbm(world: GridWorld, some_flights: Flights) -> NDArray[np.float64]:
+    """Mean RSS [dBm] over the cells of each flight (n,)."""
+    return np.array([world.rss_dbm[flight].mean() for flight in some_flights])
+
+
+def strong_share(world: GridWorld, some_flights: Flights) -> NDArray[np.float64]:
+    """Share of each flight's cells that are not weak [%], (n,)."""
+    strong = world.rss_dbm > np.quantile(world.rss_dbm, WEAK_SHARE)
+    return np.array([100.0 * strong[flight].mean() for flight in some_flights])
+
+
+def turns(world: GridWorld, flight: NDArray[np.integer]) -> float:
+    """Number of changes of heading on a flight."""
+    steps = np.diff(world.position[flight], axis=0)
+    return float(np.count_nonzero(np.any(steps[1:] != steps[:-1], axis=1)))
+
+
+def _turns_per_run(result: TrainingResult) -> NDArray[np.float64]:
+    return np.array([turns(result.world, flight) for flight in flights(result)])
+
+
+def _lengths(result: TrainingResult) -> NDArray[np.float64]:
+    return result.path_length_m[result.reached]
+
+
+def _steps(result: TrainingResult) -> NDArray[np.float64]:
+    return result.path_steps[result.reached].astype(np.float64)
+
+
+_RSS_STATISTICS: dict[str, Callable[[GridWorld, Flights], NDArray[np.float64]]] = {
+    "mean RSS [dBm]": mean_rss_dbm,
+    f"cells above the weakest {100 * WEAK_SHARE:g} % [%]": strong_share,
+}
+
+
+def _avoids_low_rss(data: PaperData) -> Iterator[Case]:
+    for scenario in data.scenarios:
+        result = data.result(scenario, "rss", SHOWN_SPEED)
+        shortest = shortest_flights(result.world, terminal_states(result), FLIGHTS_DRAWN)
+        for what, statistic in _RSS_STATISTICS.items():
+            name = f"{place(scenario, SHOWN_SPEED)}, {what}"
+            learned = statistic(result.world, flights(result))
+            reference = float(statistic(result.world, shortest).mean())
+            if learned.size == 0:
+                yield undecided(name)
+                continue
+            compared = (("RSS-based", float(learned.mean())), ("shortest flights", reference))
+            yield case(name, compared, mean(learned - reference))
+
+
+def _everywhere(test: Callable[[PaperData, int, int], Case]) -> Callable[[PaperData], list[Case]]:
+    """Return the cases of a test in every scenario at every speed."""
+    return lambda data: [
+        test(data, scenario, speed) for scenario in data.scenarios for speed in data.speeds
+    ]
+
+
+def _scenario_2_needs_more_steps(data: PaperData) -> Iterator[Case]:
+    for agent in AGENTS:
+        for speed in data.speeds:
+            first, second = (_steps(data.result(scenario, agent, speed)) for scenario in (2, 1))
+            name = f"{AGENT_LABELS[agent]}, {speed} m/s"
+            if first.size == 0 or second.size == 0:
+                yield undecided(name)
+                continue
+            compared = (("Scenario 2", float(first.mean())), ("Scenario 1", float(second.mean())))
+            yield case(name, compared, difference(first, second))
+
+
+CLAIMS = (
+    Claim(
+        "avoids-low-rss",
+        "The RSS-based agent's trajectories tend to keep away from regions of low RSS.",
+        f"Final flights at {SHOWN_SPEED} m/s against the average of {FLIGHTS_DRAWN} flights drawn "
+        "at random from all shortest ones: mean RSS over the cells, and share of cells that are "
+        f"not among the weakest {100 * WEAK_SHARE:g} % of the building. Reproduced where the "
+        "RSS-based flights' is higher.",
+        "RSS-based minus shortest flights",
+        lambda data: list(_avoids_low_rss(data)),
+    ),
+    Claim(
+        "location-straighter",
+        "The location-based agent flies straighter trajectories.",
+        "Changes of heading on the final flight. Reproduced where the RSS-based agent makes more.",
+        "changes of heading, RSS-based minus location-based",
+        _everywhere(lambda d, s, v: agents_differ(d, s, v, _turns_per_run, larger="rss")),
+    ),
+    Claim(
+        "location-shorter",
+        "The location-based agent's final path is shorter, as it is straighter.",
+        "Length of the final flight. Reproduced where the RSS-based agent's is longer.",
+        "length [m], RSS-based minus location-based",
+        _everywhere(lambda d, s, v: agents_differ(d, s, v, _lengths, larger="rss")),
+    ),
+    Claim(
+        "lengths-close",
+        "The RSS-based agent comes very close to the location-based one in its final trajectory.",
+        f"Ratio of the mean lengths. Reproduced where it lies within a factor {_CLOSE:.3f}, the "
+        "largest in the paper's own table.",
+        "ratio of lengths, RSS-based over location-based",
+        _everywhere(lambda d, s, v: agents_alike(d, s, v, _lengths, between(1.0 / _CLOSE, _CLOSE))),
+    ),
+    Claim(
+        "scenario-2-longer",
+        "Scenario 2 takes more steps than Scenario 1, as its hallways are longer.",
+        "Steps of the final flight. Reproduced where Scenario 2 takes more.",
+        "steps, Scenario 2 minus Scenario 1",
+        lambda data: list(_scenario_2_needs_more_steps(data)),
+    ),
+)

@@ -1,0 +1,137 @@
+"""What the figures, tables and claims are made from: plans, maps and training results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.agents import Agent, LocationAgent, RssAgent
+from rssnav.experiments.paper.first_episodes import FirstEpisodes
+from rssnav.planning import Path, shortest_path
+from rssnav.results import TrainingResult
+from rssnav.world import GridWorld
+
+if TYPE_CHECKING:
+    from floorplans import FloorPlan
+    from raytrace import RadioMap
+
+AgentName = Literal["rss", "location"]
+
+AGENTS: dict[AgentName, Agent] = {"rss": RssAgent(), "location": LocationAgent()}
+"""The paper's two agents, in the order in which it shows them."""
+
+AGENT_LABELS: dict[AgentName, str] = {"rss": "RSS-based", "location": "location-based"}
+
+SPEEDS = (1, 2, 4)
+"""Speeds the paper flies at [cells per step; m/s on its 1 m grid]."""
+
+SHOWN_EPISODES = 1000
+"""Episodes that the paper's learning figures show."""
+
+VISIT_EPISODES = (200, 500, SHOWN_EPISODES)
+"""Episodes after which the paper shows the visits of each cell."""
+
+
+@dataclass(frozen=True, order=True)
+class Configuration:
+    """One of the trainings of the paper.
+
+    Attributes
+    ----------
+    scenario : int
+        1 or 2.
+    agent : str
+        "rss" or "location".
+    speed : int
+        Cells per step [m/s on a 1 m grid].
+    """
+
+    scenario: int
+    agent: AgentName
+    speed: int
+
+    @property
+    def name(self) -> str:
+        """Name for files."""
+        return f"scenario{self.scenario}_{self.agent}_{self.speed}mps"
+
+    @property
+    def label(self) -> str:
+        """Name for people."""
+        return f"Scenario {self.scenario}, {AGENT_LABELS[self.agent]}, {self.speed} m/s"
+
+
+@dataclass(frozen=True, eq=False)
+class Scenario:
+    """A floor plan and its radio map."""
+
+    plan: FloorPlan
+    radio_map: RadioMap
+
+
+@dataclass(frozen=True, eq=False)
+class PaperData:
+    """All that a run of the paper measured.
+
+    Attributes
+    ----------
+    scenarios : mapping of int to Scenario
+        Plans and maps, by the scenario's number.
+    results : mapping of Configuration to TrainingResult
+        Trainings.
+    first_episodes : mapping of Configuration to FirstEpisodes
+        Visits and policies of each realisation in its first episodes, for the trainings whose
+        visits the paper shows.
+    """
+
+    scenarios: Mapping[int, Scenario]
+    results: Mapping[Configuration, TrainingResult]
+    first_episodes: Mapping[Configuration, FirstEpisodes]
+
+    def result(self, scenario: int, agent: AgentName, speed: int) -> TrainingResult:
+        """Return the training of a configuration."""
+        return self.results[Configuration(scenario, agent, speed)]
+
+    @property
+    def speeds(self) -> tuple[int, ...]:
+        """Speeds of the trainings, ascending [m/s]."""
+        return tuple(sorted({key.speed for key in self.results}))
+
+    @property
+    def n_runs(self) -> int:
+        """Realisations of each configuration."""
+        return next(iter(self.results.values())).run_ids.size
+
+    @cached_property
+    def shortest_in_metres(self) -> dict[tuple[int, int], Path]:
+        """Shortest flight by length, by (scenario, speed)."""
+        return {key: shortest_path(*world, "metres") for key, world in self._worlds().items()}
+
+    @cached_property
+    def shortest_in_steps(self) -> dict[tuple[int, int], Path]:
+        """Flight of fewest steps, the shortest such, by (scenario, speed)."""
+        return {key: shortest_path(*world, "steps") for key, world in self._worlds().items()}
+
+    def _worlds(self) -> dict[tuple[int, int], tuple[GridWorld, NDArray[np.bool_]]]:
+        """World and terminal states of each (scenario, speed), by the location agent's rule."""
+        return {
+            (key.scenario, key.speed): (result.world, terminal_states(result))
+            for key, result in self.results.items()
+            if key.agent == "location"
+        }
+
+
+def terminal_states(result: TrainingResult) -> NDArray[np.bool_]:
+    """States (S,) that end an episode of a training."""
+    return result.agent.decision_process(result.world, result.learning).terminal
+
+
+def flights(result: TrainingResult) -> list[NDArray[np.int32]]:
+    """States (n + 1,) of each final flight that reaches the source."""
+    rows = result.trajectories[result.reached]
+    return [row[row >= 0] for row in rows]

@@ -1,0 +1,137 @@
+"""Figure: time to convergence against speed, as episodes, flight time and CPU time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
+from numpy.typing import NDArray
+
+from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS, AgentName, PaperData
+from rssnav.experiments.statistics import mean
+from rssnav.pictures.style import AGENT_COLOURS, PAGE_IN, label_panel, new_figure, styled
+from rssnav.results import TrainingResult
+
+STEP_S = 1.0
+"""Duration of a step [s]."""
+
+_LINES = {1: ("-", "o", True), 2: ("--", "s", False)}
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A reading of "convergence time".
+
+    Attributes
+    ----------
+    name, heading, title : str
+        Names for files, axes (with the unit) and panels.
+    digits : int
+        Digits after the decimal point that tables show.
+    scale : str
+        Scale of its axis, "linear" from zero or "log".
+    of : callable
+        From a training to the time of each run that converged, shape (C,).
+    """
+
+    name: str
+    heading: str
+    title: str
+    digits: int
+    scale: str
+    of: Callable[[TrainingResult], NDArray[np.float64]]
+
+
+def converged(result: TrainingResult) -> NDArray[np.bool_]:
+    """Tell which realisations (R,) converged."""
+    return result.converged_episode >= 0
+
+
+def _episodes(result: TrainingResult) -> NDArray[np.float64]:
+    return result.converged_episode[converged(result)].astype(np.float64)
+
+
+def _flight_time_h(result: TrainingResult) -> NDArray[np.float64]:
+    return result.converged_steps[converged(result)].astype(np.float64) * (STEP_S / 3600.0)
+
+
+def _cpu_time_ms(result: TrainingResult) -> NDArray[np.float64]:
+    return 1000.0 * result.converged_cpu_s[converged(result)]
+
+
+MEASURES = (
+    Measure("episodes_to_convergence", "episodes", "episodes", 0, "linear", _episodes),
+    Measure("flight_time_h", "flight time [h]", "simulated flight time", 1, "log", _flight_time_h),
+    Measure("cpu_time_ms", "CPU time [ms]", "CPU time", 1, "log", _cpu_time_ms),
+)
+
+
+@styled
+def draw(data: PaperData) -> Figure:
+    """Draw a panel per measure of time, a curve per agent and scenario."""
+    figure = new_figure(PAGE_IN, 2.5)
+    panels = figure.subplots(1, len(MEASURES))
+    for k, measure in enumerate(MEASURES):
+        _draw_measure(panels[k], data, measure)
+        label_panel(panels[k], "abc"[k], measure.title)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    return figure
+
+
+def _draw_measure(ax: Axes, data: PaperData, measure: Measure) -> None:
+    for number in data.scenarios:
+        for agent in AGENTS:
+            _draw_curve(ax, data, measure, number, agent)
+    ax.set_xscale("log", base=2)
+    ax.set_yscale(measure.scale)
+    if measure.scale == "linear":
+        ax.set_ylim(bottom=0.0)
+    ax.set_xticks(data.speeds, [str(speed) for speed in data.speeds])
+    ax.xaxis.set_minor_locator(NullLocator())
+    ax.set_xlabel("speed [m/s]")
+    ax.set_ylabel(f"{measure.heading} to convergence")
+    ax.grid(True, axis="y")
+
+
+def _draw_curve(
+    ax: Axes, data: PaperData, measure: Measure, scenario: int, agent: AgentName
+) -> None:
+    """Draw means with their 95 % bootstrap intervals; speeds without convergence are left out."""
+    times = {speed: measure.of(data.result(scenario, agent, speed)) for speed in data.speeds}
+    estimates = {speed: mean(values) for speed, values in times.items() if values.size}
+    line, marker, filled = _LINES[scenario]
+    colour = AGENT_COLOURS[agent]
+    ax.errorbar(
+        list(estimates),
+        [each.value for each in estimates.values()],
+        yerr=(
+            [each.value - each.low for each in estimates.values()],
+            [each.high - each.value for each in estimates.values()],
+        ),
+        color=colour,
+        linestyle=line,
+        marker=marker,
+        markersize=4,
+        markerfacecolor=colour if filled else "white",
+        capsize=2,
+        elinewidth=0.8,
+        label=f"{AGENT_LABELS[agent]}, Scenario {scenario}",
+        gid=f"{agent} scenario{scenario}",
+    )
+
+
+def caption(data: PaperData) -> str:
+    """Say what the figure shows."""
+    return (
+        "Time until a run flies the same path in three episodes on end: mean over the "
+        f"{data.n_runs} realisations with its 95 % bootstrap interval (mostly smaller than the "
+        "mark). The paper does not say which time it means, so all three are shown: (a) episodes, "
+        "(b) simulated flight time at one second a step, (c) CPU time of the learning loop. Time "
+        "in the air falls with speed; the number of episodes need not, because exploration decays "
+        "per step and a faster flight takes fewer steps per episode."
+    )

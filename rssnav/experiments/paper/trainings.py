@@ -1,0 +1,148 @@
+"""Train the paper's configurations, going on from the files of an earlier run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from rssnav.agents import Agent, QLearning
+from rssnav.experiments.paper.data import (
+    AGENTS,
+    SHOWN_EPISODES,
+    VISIT_EPISODES,
+    Configuration,
+    Scenario,
+)
+from rssnav.experiments.paper.printed_values import EPISODE_LIMIT
+from rssnav.result_file import ResultFileError
+from rssnav.results import Schedule, TrainingResult
+from rssnav.training import TrainingInterrupted, train
+from rssnav.world import GridWorld
+
+Notice = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class TrainingPlan:
+    """How the configurations are trained.
+
+    Attributes
+    ----------
+    folder : Path
+        Where the results are kept, a file per configuration.
+    runs, seed : int
+        Realisations of each, and the seed of all.
+    threads : int or None
+        Threads; all cores for None.
+    resume : bool
+        Whether results of the same training are taken over from ``folder``.
+    notice : callable
+        Called with a sentence for people.
+    """
+
+    folder: Path
+    runs: int
+    seed: int
+    threads: int | None
+    resume: bool
+    notice: Notice
+
+    @property
+    def schedule(self) -> Schedule:
+        """Length and seed of each training."""
+        return Schedule(self.runs, EPISODE_LIMIT, self.seed, True, SHOWN_EPISODES, VISIT_EPISODES)
+
+    def result(
+        self,
+        key: Configuration,
+        world: GridWorld,
+        progress: Callable[[int, int], None] | None = None,
+    ) -> tuple[TrainingResult, bool]:
+        """Return a configuration's training, and whether anything had to be trained.
+
+        Raises
+        ------
+        TrainingInterrupted
+            On Ctrl-C, after the finished realisations are saved.
+        """
+        path = self.folder / f"{key.name}.h5"
+        earlier = self._earlier(path, key, world)
+        if earlier is not None and earlier.complete:
+            return earlier, False
+        if earlier is not None:
+            self.notice(f"{key.label}: going on from {earlier.run_ids.size} of {self.runs} runs")
+        result = self._train(path, AGENTS[key.agent], world, earlier, progress)
+        result.save(path)
+        return result, True
+
+    def _train(
+        self,
+        path: Path,
+        agent: Agent,
+        world: GridWorld,
+        earlier: TrainingResult | None,
+        progress: Callable[[int, int], None] | None,
+    ) -> TrainingResult:
+        schedule = self.schedule
+        try:
+            return train(
+                world,
+                agent,
+                runs=schedule.runs,
+                episodes=schedule.episodes,
+                seed=schedule.seed,
+                until_converged=schedule.until_converged,
+                min_episodes=schedule.min_episodes,
+                snapshot_episodes=schedule.snapshot_episodes,
+                threads=self.threads,
+                progress=progress,
+                resume=earlier,
+            )
+        except TrainingInterrupted as interrupt:
+            if interrupt.result is not None:
+                interrupt.result.save(path)
+            raise
+
+    def _earlier(self, path: Path, key: Configuration, world: GridWorld) -> TrainingResult | None:
+        """Return the realisations of the same training that are already there."""
+        if not self.resume or not path.exists():
+            return None
+        try:
+            result = TrainingResult.load(path)
+            result.check_same_training(world, AGENTS[key.agent], QLearning(), self.schedule)
+        except ResultFileError:
+            self.notice(f"{key.label}: {path} cannot be read; training again")
+            return None
+        except ValueError as difference:
+            self.notice(f"{key.label}: {path}: {difference}".split("; ")[0].split(": train ")[0])
+            return None
+        return result
+
+
+def worlds(
+    scenarios: Mapping[int, Scenario], speeds: tuple[int, ...]
+) -> dict[tuple[int, int], GridWorld]:
+    """Make the world of each (scenario, speed). Raises :class:`~rssnav.world.WorldError`."""
+    return {
+        (number, speed): GridWorld.from_map(scenario.plan, scenario.radio_map, speed)
+        for number, scenario in scenarios.items()
+        for speed in speeds
+    }
+
+
+def compile_loop(world: GridWorld) -> None:
+    """Make sure the learning loop is compiled, so that CPU times measure learning alone."""
+    train(world, AGENTS["location"], runs=1, episodes=1, learning=QLearning(max_steps=1))
+
+
+def configurations(
+    scenarios: Mapping[int, Scenario], speeds: tuple[int, ...]
+) -> list[Configuration]:
+    """List the configurations: scenarios, in each both agents, each at all speeds."""
+    return [
+        Configuration(number, agent, speed)
+        for number in scenarios
+        for agent in AGENTS
+        for speed in speeds
+    ]

@@ -1,0 +1,160 @@
+"""The alternatives to our reading of the paper, and what comes of each."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rssnav.agents import QLearning
+from rssnav.experiments.paper.data import AGENTS, SHOWN_EPISODES, Configuration
+from rssnav.experiments.paper.printed_values import EPISODE_LIMIT
+from rssnav.results import TrainingResult
+from rssnav.training import train
+from rssnav.world import GridWorld, WorldError
+
+STEP_LIMIT = 25_000_000
+"""Steps after which a run is given up; our reading needs 10 million at most to converge."""
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Another choice of one parameter.
+
+    Attributes
+    ----------
+    parameter, choice : str
+        What is chosen, and how.
+    learning : QLearning
+        Parameters with this choice.
+    coherent : bool
+        Whether the map sums the paths' fields instead of their powers.
+    episodes : int or None
+        Train as many episodes and no more, not until convergence.
+    """
+
+    parameter: str
+    choice: str
+    learning: QLearning = field(default_factory=QLearning)
+    coherent: bool = False
+    episodes: int | None = None
+
+    @property
+    def label(self) -> str:
+        """Name for people."""
+        return f"{self.parameter}: {self.choice}"
+
+    def concerns(self, key: Configuration) -> bool:
+        """Whether it can make a difference: the location agent never looks at the map."""
+        return not self.coherent or key.agent == "rss"
+
+
+OURS = Alternative("our reading", "defaults")
+FLOWN = Alternative("final trajectory", "flown three times")
+"""No training of its own: the flights by which the defaults converged, in place of greedy ones."""
+
+ALTERNATIVES: tuple[Alternative, ...] = (
+    *(Alternative("initial Q", f"{q:g}", QLearning(initial_q=q)) for q in (0.0, 20.0, 50.0)),
+    *(Alternative("initial Q", f"{q:g}", QLearning(initial_q=q)) for q in (200.0, 500.0)),
+    Alternative("maximum over", "all actions", QLearning(maximum_over="all")),
+    Alternative("episode cap", "2 000 steps", QLearning(max_steps=2_000)),
+    Alternative("episode cap", "200 000 steps", QLearning(max_steps=200_000)),
+    Alternative("map", "coherent sum", coherent=True),
+    Alternative("decay", "per episode, η 1e-5", QLearning(decay="episode")),
+    Alternative("decay", "per episode, η 1e-3", QLearning(decay="episode", eta=1e-3)),
+    Alternative("tie-break", "random", QLearning(tie_break="random")),
+    Alternative("goal reward", "instead", QLearning(goal_reward_is="instead")),
+    Alternative("training", f"{SHOWN_EPISODES} episodes", episodes=SHOWN_EPISODES),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What came of an alternative in one configuration.
+
+    Attributes
+    ----------
+    alternative : Alternative
+    key : Configuration
+    runs : int
+        Realisations.
+    episodes, steps : (C,) float64
+        Flown at convergence, of the C runs that converged.
+    length_m, path_steps : (A,) float64
+        Length [m] and steps of the A final flights that reach the source.
+    obstacle : str
+        Why nothing could be trained; empty where it could.
+    """
+
+    alternative: Alternative
+    key: Configuration
+    runs: int
+    episodes: NDArray[np.float64]
+    steps: NDArray[np.float64]
+    length_m: NDArray[np.float64]
+    path_steps: NDArray[np.float64]
+    obstacle: str = ""
+
+
+def outcomes_of(
+    alternative: Alternative,
+    key: Configuration,
+    world: GridWorld,
+    *,
+    runs: int,
+    seed: int,
+    threads: int | None,
+) -> list[Outcome]:
+    """Train an alternative in a configuration; our own reading also gives :data:`FLOWN`.
+
+    Raises
+    ------
+    TrainingInterrupted
+        On Ctrl-C.
+    """
+    try:
+        result = train(
+            world,
+            AGENTS[key.agent],
+            runs=runs,
+            episodes=alternative.episodes or EPISODE_LIMIT,
+            seed=seed,
+            learning=alternative.learning,
+            until_converged=alternative.episodes is None,
+            min_episodes=1,
+            max_total_steps=STEP_LIMIT,
+            threads=threads,
+        )
+    except WorldError as error:
+        none = np.empty(0)
+        return [Outcome(alternative, key, runs, none, none, none, none, str(error))]
+    outcome = _greedy(alternative, key, result)
+    return [outcome, _flown(outcome, result)] if alternative is OURS else [outcome]
+
+
+def _greedy(alternative: Alternative, key: Configuration, result: TrainingResult) -> Outcome:
+    """Outcome by the greedy flights after training."""
+    converged = result.converged_episode >= 0
+    return Outcome(
+        alternative,
+        key,
+        result.run_ids.size,
+        result.converged_episode[converged].astype(np.float64),
+        result.converged_steps[converged].astype(np.float64),
+        result.path_length_m[result.reached],
+        result.path_steps[result.reached].astype(np.float64),
+    )
+
+
+def _flown(outcome: Outcome, result: TrainingResult) -> Outcome:
+    """Outcome by the flights of the episodes in which the runs converged."""
+    runs = np.flatnonzero(result.converged_episode >= 0)
+    last = result.converged_episode[runs] - 1
+    return dataclasses.replace(
+        outcome,
+        alternative=FLOWN,
+        length_m=result.episode_length_m[runs, last],
+        path_steps=result.steps[runs, last].astype(np.float64),
+    )

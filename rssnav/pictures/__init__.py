@@ -1,0 +1,1 @@
+"""Figures of maps, paths and flights, in one style."""

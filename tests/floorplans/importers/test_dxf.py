@@ -1,0 +1,383 @@
+"""One flat, drawn in many ways, becomes the same plan; bad drawings are refused with a reason."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from contextlib import suppress
+from math import atan, cos, pi, radians, sin
+from pathlib import Path
+
+import dxf_drawings as draw
+import pytest
+from ezdxf.document import Drawing
+from shapely.geometry import LineString, Point
+
+from floorplans import FloorPlan, PlanError
+from floorplans.importers import Imported, ImportOptions, import_plan
+from floorplans.importers.dxf import drawing as dxf_drawing
+from floorplans.importers.dxf import reader as dxf
+from floorplans.importers.dxf.curves import chord_step_deg
+from floorplans.importers.layer_names import Meaning, meaning_of
+from floorplans.walls import Opening, Wall
+
+INCH = 1 / 0.0254
+
+
+def imported(doc: Drawing, folder: Path, **options: object) -> Imported:
+    return import_plan(draw.save(doc, folder), ImportOptions(**options))  # type: ignore[arg-type]
+
+
+def refusal(doc: Drawing, folder: Path, **options: object) -> str:
+    with pytest.raises(PlanError) as caught:
+        imported(doc, folder, **options)
+    return str(caught.value)
+
+
+def partition(plan: FloorPlan) -> Wall:
+    """The wall inside the outline."""
+    (inner,) = (
+        wall
+        for wall in plan.walls
+        if plan.outline.boundary.distance(Point(wall.point_at(wall.length_m / 2))) > 0.1
+    )
+    return inner
+
+
+def openings(plan: FloorPlan) -> list[tuple[Wall, Opening]]:
+    return [(wall, opening) for wall in plan.walls for opening in wall.openings]
+
+
+def middle(wall: Wall, opening: Opening) -> tuple[float, float]:
+    return wall.point_at(opening.offset_m + opening.width_m / 2)
+
+
+def assert_is_the_flat(plan: FloorPlan, thick: bool = True) -> None:
+    """Centre lines 7.7 m x 5.7 m, partition at x = 4.85 from the south-west corner's."""
+    assert plan.bounds == pytest.approx((0, 0, 7.7, 5.7), abs=0.01)
+    assert plan.outline.area == pytest.approx(7.7 * 5.7, rel=0.005)
+    assert len(plan.walls) == 5
+    inner = partition(plan)
+    assert {round(inner.start[0], 2), round(inner.end[0], 2)} == {4.85}
+    assert inner.length_m == pytest.approx(5.7, abs=0.01)
+    if thick:
+        assert inner.thickness_m == pytest.approx(0.1, abs=0.005)
+        assert {round(w.thickness_m, 2) for w in plan.walls if w is not inner} == {0.3}
+    kinds = sorted(
+        (opening.kind, round(opening.width_m, 2), *(round(c, 1) for c in middle(wall, opening)))
+        for wall, opening in openings(plan)
+    )
+    assert kinds == [
+        ("door", 0.9, 4.8, 2.3), ("door", 1.0, 1.4, 0.0), ("window", 1.5, 2.6, 5.7)
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "drawing", [draw.flat_of_bodies, draw.flat_of_line_pairs, draw.flat_of_two_rings]
+)
+def test_the_flat_comes_out_of_every_habit(drawing: Callable[[], Drawing], tmp_path: Path):
+    assert_is_the_flat(imported(drawing(), tmp_path).plan)
+
+
+def test_single_lines_get_the_default_thickness(tmp_path: Path):
+    result = imported(draw.flat_of_single_lines(), tmp_path)
+    assert_is_the_flat(result.plan, thick=False)
+    assert {wall.thickness_m for wall in result.plan.walls} == {0.1}
+    assert "wall thickness_m" in {assumption.key for assumption in result.assumed}
+    given = imported(draw.flat_of_single_lines(), tmp_path, wall_thickness_m=0.2)
+    assert {wall.thickness_m for wall in given.plan.walls} == {0.2}
+
+
+def test_nested_turned_and_scaled_blocks_are_exploded(tmp_path: Path):
+    plan = imported(draw.flat_in_nested_blocks(), tmp_path).plan
+    assert plan.bounds == pytest.approx((0, 0, 5.7, 7.7), abs=0.01)
+    assert sorted(opening.kind for _, opening in openings(plan)) == ["door", "door", "window"]
+
+
+@pytest.mark.parametrize(("code", "k"), [(1, INCH), (5, 100.0), (6, 1.0), (2, INCH / 12)])
+def test_the_header_tells_the_unit(code: int, k: float, tmp_path: Path):
+    assert_is_the_flat(imported(draw.flat_of_bodies(code, k), tmp_path).plan)
+
+
+@pytest.mark.parametrize("k", [1000.0, 100.0, 1.0, INCH])
+def test_a_missing_unit_is_told_by_building_and_doors(k: float, tmp_path: Path):
+    result = imported(draw.flat_of_bodies(0, k), tmp_path)
+    assert_is_the_flat(result.plan)
+    assert any("doors say" in note for note in result.notes)
+
+
+def test_a_missing_unit_that_could_be_two_is_asked_for(tmp_path: Path):
+    doc = draw.new(0)
+    draw.add_rings(doc.modelspace(), draw.bodies(), "wall")
+    message = refusal(doc, tmp_path)
+    assert "does not tell its unit" in message
+    assert "--unit mm for 8 m x 6 m" in message
+    assert_size = imported(doc, tmp_path, unit="mm").plan.bounds
+    assert assert_size == pytest.approx((0, 0, 7.7, 5.7), abs=0.01)
+
+
+def test_a_building_of_kilometres_is_refused_with_the_unit_that_fits(tmp_path: Path):
+    message = refusal(draw.flat_of_bodies(6, 1000.0), tmp_path)
+    assert "8 km x 6 km" in message
+    assert "--unit mm for 8 m x 6 m" in message
+
+
+def test_doors_inside_are_open_and_those_in_the_outline_are_shut(tmp_path: Path):
+    plan = imported(draw.flat_of_bodies(), tmp_path).plan
+    doors = {wall is partition(plan): o.material for wall, o in openings(plan) if o.kind == "door"}
+    assert doors == {True: None, False: "wood"}
+
+
+def test_double_doors_are_one_opening(tmp_path: Path):
+    doc = draw.new()
+    space = doc.modelspace()
+    rings = [*draw.bodies()[:-2], draw.rectangle(4.95, 0.3, 5.05, 2),
+             draw.rectangle(4.95, 3.8, 5.05, 5.7)]  # fmt: skip
+    draw.add_rings(space, rings, "wall")
+    draw.add_openings(doc)
+    door = {"layer": "A-DOOR", "rotation": -90, "yscale": -1}
+    space.add_blockref("DOOR90", (4950, 3800), dxfattribs=door)
+    plan = imported(doc, tmp_path).plan
+    (opening,) = partition(plan).openings
+    assert opening.width_m == pytest.approx(1.8, abs=0.01)
+
+
+def test_lines_of_windows_are_openings_in_walls_and_panes_elsewhere(tmp_path: Path):
+    doc = draw.new()
+    space = doc.modelspace()
+    draw.add_rings(space, draw.bodies(), "wall")
+    for y in (5.7, 5.85, 6):
+        draw.add_lines(space, [((2, y), (3.5, y))], "window")
+    draw.add_lines(space, [((5, 3.5), (7.85, 3.5))], "window")
+    draw.add_openings(doc)
+    plan = imported(doc, tmp_path).plan
+    (pane,) = (wall for wall in plan.walls if wall.material == "glass")
+    assert pane.length_m == pytest.approx(2.85, abs=0.05)
+    assert [o.width_m for _, o in openings(plan) if o.kind == "window"] == pytest.approx([1.5])
+
+
+def test_round_walls_become_chords_within_the_tolerance(tmp_path: Path):
+    doc = draw.new()
+    for radius in (5000, 5300):
+        doc.modelspace().add_circle((0, 0), radius, dxfattribs={"layer": "WALL"})
+    plan = imported(doc, tmp_path).plan
+    assert plan.outline.area == pytest.approx(pi * 5.15**2, rel=0.02)
+    assert all(wall.thickness_m == pytest.approx(0.3, abs=0.01) for wall in plan.walls)
+    centre = plan.outline.centroid
+    lines = [LineString([wall.start, wall.end]) for wall in plan.walls]
+    assert all(5.15 - 0.05 <= line.distance(centre) <= 5.15 + 0.02 for line in lines)
+
+
+def test_bulges_are_followed(tmp_path: Path):
+    doc = draw.new()
+    points = [(0, 0, 0.0), (8000, 0, 0.4), (8000, 6000, 0.0), (0, 6000, 0.0)]
+    line = doc.modelspace().add_lwpolyline(points, format="xyb", close=True)
+    line.dxf.layer = "wall"
+    plan = imported(doc, tmp_path).plan
+    radius, half_angle = (3**2 + 1.2**2) / 2.4, 2 * atan(0.4)
+    segment = radius**2 * (half_angle - sin(half_angle) * cos(half_angle))
+    assert plan.outline.area == pytest.approx(48 + segment, abs=0.05)
+    assert plan.bounds[2] == pytest.approx(8 + 0.4 * 3, abs=0.02)
+
+
+@pytest.mark.parametrize(("radius", "tolerance"), [(5000, 20), (300, 20), (1.0, 0.02)])
+def test_chords_stay_within_the_tolerance(radius: float, tolerance: float):
+    step = chord_step_deg(radius, tolerance)
+    assert radius * (1 - cos(radians(step / 2))) <= tolerance
+
+
+def test_furniture_and_text_are_left_out_and_told(tmp_path: Path):
+    doc = draw.flat_of_bodies()
+    space = doc.modelspace()
+    draw.add_rings(space, [draw.rectangle(1, 1, 2, 2)], "A-FURN")
+    space.add_text("Kitchen", dxfattribs={"layer": "A-WALL"}).set_placement((2000, 2000))
+    draw.add_rings(space, [draw.rectangle(6, 3, 6.2, 4)], "misc")
+    result = imported(doc, tmp_path)
+    assert_is_the_flat(result.plan)
+    became = {use.name: use.became for use in result.layers}
+    assert became["A-FURN"] == "left out"
+    assert "--layer 'misc=wall'" in became["misc"]
+    assert became["A-WALL"] == "walls"
+    assert became["A-DOOR"] == "2 blocks of doors and windows"
+
+
+def test_layers_are_what_the_user_says(tmp_path: Path):
+    doc = draw.new()
+    draw.add_rings(doc.modelspace(), draw.bodies()[:-2], "layer7")
+    draw.add_rings(doc.modelspace(), draw.bodies()[-2:], "0")
+    draw.add_openings(doc)
+    plan = imported(doc, tmp_path, layers={"LAYER?": "wall:brick", "0": "wall:wood"}).plan
+    assert_is_the_flat(plan)
+    assert partition(plan).material == "wood"
+    assert {wall.material for wall in plan.walls} == {"wood", "brick"}
+
+
+def test_layers_of_unknown_names_are_walls_where_no_other_is(tmp_path: Path):
+    doc = draw.new()
+    draw.add_rings(doc.modelspace(), draw.bodies(), "0")
+    draw.add_openings(doc)
+    result = imported(doc, tmp_path)
+    assert_is_the_flat(result.plan)
+    assert [use.became for use in result.layers if use.name == "0"] == [
+        "walls (no layer is named like walls)"
+    ]
+
+
+def test_layers_that_are_off_are_left_out(tmp_path: Path):
+    doc = draw.flat_of_bodies()
+    doc.layers.add("WALL-OLD").off()
+    draw.add_rings(doc.modelspace(), [draw.rectangle(2, 1, 3, 1.2)], "WALL-OLD")
+    result = imported(doc, tmp_path)
+    assert_is_the_flat(result.plan)
+    assert "left out (off or frozen in the drawing)" in {use.became for use in result.layers}
+
+
+@pytest.mark.parametrize(
+    ("name", "meaning"),
+    [
+        ("A-WALL-FULL", Meaning("wall")),
+        ("Außenwand_Beton", Meaning("wall", "concrete")),
+        ("MURS PORTEURS", Meaning("wall")),
+        ("WALL-CHIPBOARD", Meaning("wall", "chipboard")),
+        ("Wall ceiling_board", Meaning("wall", "ceiling_board")),
+        ("Tabiques yeso", Meaning("wall", "plasterboard")),
+        ("I-GLAZ", Meaning("wall", "glass")),
+        ("Türen", Meaning("door")),
+        ("PORTE", Meaning("door")),
+        ("A-WINDOW", Meaning("window")),
+        ("Fenêtres", Meaning("window")),
+        ("DoorText", Meaning("ignore")),
+        ("A-FURN", Meaning("ignore")),
+        ("Ground floor walls", Meaning("wall")),
+        ("0", Meaning(None)),
+        ("portrait", Meaning(None)),
+    ],
+)
+def test_names_of_layers_in_many_languages(name: str, meaning: Meaning):
+    assert meaning_of(name) == meaning
+
+
+@pytest.mark.parametrize(
+    ("layers", "said"),
+    [
+        ({"x": "wal"}, 'layers.x = "wal": unknown kind of layer; did you mean "wall"?'),
+        ({"*": "wall:gold"}, "unknown material"),
+    ],
+)
+def test_wrong_meanings_are_told(layers: dict[str, str], said: str, tmp_path: Path):
+    doc = draw.flat_of_bodies()
+    draw.add_rings(doc.modelspace(), [draw.rectangle(1, 1, 2, 2)], "x")
+    assert said in refusal(doc, tmp_path, layers=layers)
+
+
+def test_an_empty_drawing_is_refused(tmp_path: Path):
+    assert "the drawing is empty" in refusal(draw.new(), tmp_path)
+
+
+def test_a_drawing_of_text_is_refused(tmp_path: Path):
+    doc = draw.new()
+    doc.modelspace().add_text("nothing but words", dxfattribs={"layer": "notes"})
+    assert "no lines of walls were found" in refusal(doc, tmp_path)
+    assert "'notes'" in refusal(doc, tmp_path)
+
+
+def test_walls_that_close_nothing_are_refused(tmp_path: Path):
+    doc = draw.new()
+    draw.add_lines(doc.modelspace(), [((0, 0), (30, 0)), ((0, 20), (30, 20))], "wall")
+    assert "close no region" in refusal(doc, tmp_path)
+
+
+def test_another_kind_of_file_is_refused(tmp_path: Path):
+    path = tmp_path / "plan.dxf"
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(100))
+    with pytest.raises(PlanError, match="does not begin like a DXF drawing; it looks like a ROS"):
+        import_plan(path)
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path: Path):
+    with pytest.raises(PlanError, match="cannot be read"):
+        import_plan(tmp_path / "missing.dxf")
+
+
+def test_blocks_that_explode_without_end_are_refused_before_work(tmp_path: Path):
+    doc = draw.flat_of_bodies()
+    doc.blocks.new("B0").add_line((0, 0), (1, 0))
+    for level in range(1, 30):
+        block = doc.blocks.new(f"B{level}")
+        for _ in range(3):
+            block.add_blockref(f"B{level - 1}", (0, 0))
+    doc.modelspace().add_blockref("B29", (0, 0))
+    assert "objects, more than 500000; save one storey" in refusal(doc, tmp_path)
+
+
+def test_too_many_objects_are_refused_before_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(dxf_drawing, "MAX_RECORDS", 50)
+    assert "objects, more than 50" in refusal(draw.flat_of_bodies(), tmp_path)
+
+
+def test_more_lines_than_a_storey_has_are_refused_before_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(dxf, "MAX_LINES", 20)
+    assert "hold 32 lines, more than the 20" in refusal(draw.flat_of_bodies(), tmp_path)
+
+
+def test_a_block_within_itself_does_no_harm(tmp_path: Path):
+    doc = draw.flat_of_bodies()
+    block = doc.blocks.new("SELF")
+    block.add_blockref("SELF", (1, 1))
+    doc.modelspace().add_blockref("SELF", (0, 0), dxfattribs={"layer": "A-WALL"})
+    assert_is_the_flat(imported(doc, tmp_path).plan)
+
+
+def test_a_truncated_file_is_read_as_far_as_it_goes_or_refused(tmp_path: Path):
+    text = draw.save(draw.flat_of_bodies(), tmp_path).read_bytes()
+    cut = tmp_path / "cut.dxf"
+    cut.write_bytes(text[: len(text) // 2])
+    with pytest.raises(PlanError):
+        import_plan(cut)
+
+
+EXTREMES = ("0", "-1", "1e308", "nan", "inf", "1e-300", "5000", "1e9", "")
+ENTITIES = ("LINE", "ARC", "INSERT", "SPLINE", "ELLIPSE", "CIRCLE", "HATCH", "MLINE", "POLYLINE")
+
+
+def mutated(text: str, rng: random.Random) -> str:
+    """Text of a drawing with values replaced, and records dropped, doubled and renamed."""
+    rows = text.split("\n")
+    begin = rows.index("BLOCKS") // 2
+    for _ in range(rng.choice((1, 5, 20))):
+        at = 2 * rng.randrange(begin, len(rows) // 2 - 40)
+        match rng.randrange(5):
+            case 0:
+                rows[at + 1] = rng.choice(EXTREMES)
+            case 1:
+                rows[at + 1] = rng.choice(ENTITIES)
+            case 2:
+                del rows[at : at + 2 * rng.randrange(1, 12)]
+            case 3:
+                rows[at:at] = rows[at : at + 2 * rng.randrange(1, 30)]
+            case _:
+                rows[at] = str(rng.choice((10, 20, 40, 41, 42, 50, 51, 2, 8, 70, 210, 230)))
+    return "\n".join(rows)
+
+
+@pytest.mark.filterwarnings("ignore")  # the library warns of some damage before it raises
+@pytest.mark.parametrize("seed", range(12))
+def test_mutated_drawings_raise_nothing_but_plan_errors(seed: int, tmp_path: Path):
+    rng = random.Random(seed)
+    drawings = (draw.flat_of_line_pairs, draw.flat_in_nested_blocks, draw.flat_of_single_lines)
+    path = draw.save(drawings[seed % 3](), tmp_path)
+    path.write_text(mutated(path.read_text(), rng))
+    with suppress(PlanError):
+        import_plan(path)
+
+
+def test_any_bytes_after_the_first_raise_nothing_but_plan_errors(tmp_path: Path):
+    rng = random.Random(3)
+    data = draw.save(draw.flat_of_bodies(), tmp_path).read_bytes()
+    for _ in range(10):
+        at = rng.randrange(20, len(data))
+        (tmp_path / "broken.dxf").write_bytes(data[:at] + rng.randbytes(40) + data[at + 40 :])
+        with suppress(PlanError):
+            import_plan(tmp_path / "broken.dxf")

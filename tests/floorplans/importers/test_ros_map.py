@@ -1,0 +1,263 @@
+"""Occupancy grids become plans: straight walls, gaps, obstacles, and what the files may say."""
+
+import random
+import struct
+import zlib
+
+import numpy as np
+import pytest
+import shapely
+from PIL import Image
+from shapely.geometry import LineString, Point
+
+from floorplans import FloorPlan, PlanError
+from floorplans.importers import ImportOptions, import_plan
+from floorplans.importers.ros_map.occupancy_grid import read_grid
+from floorplans.importers.ros_map.thinning import polylines, thinned
+from floorplans.importers.ros_map.vectorise import walls_of_picture
+
+PIXEL_M = 0.05
+YAML = """image: {image}
+resolution: 0.05
+origin: [-1.0, -2.0, 0.0]
+negate: 0
+occupied_thresh: 0.65
+free_thresh: 0.196
+"""
+
+
+def drawn(area, free, n_x=280, n_y=240) -> np.ndarray:
+    """Return values of pixels, the first row the highest: 0 wall, 254 free, 205 unknown."""
+    x, y = np.meshgrid((np.arange(n_x) + 0.5) * PIXEL_M, (np.arange(n_y) + 0.5) * PIXEL_M)
+    values = np.full((n_y, n_x), 205, dtype=np.uint8)
+    values[shapely.contains_xy(free, x, y)] = 254
+    values[shapely.contains_xy(area, x, y)] = 0
+    return values[::-1]
+
+
+# A room of 10 m x 7 m with a partition at x = 6 that has a gap of 1 m, and a round pillar
+ROOM = shapely.box(1, 1, 11, 8)
+LINES = [ROOM.exterior, LineString([(6, 1), (6, 4)]), LineString([(6, 5), (6, 8)])]
+PILLAR = Point(3.5, 4.5).buffer(0.3)
+
+
+def room_values(angle: float = 0.0) -> np.ndarray:
+    walls = shapely.union_all(
+        [shapely.buffer(line, 0.1, cap_style="flat", join_style="mitre") for line in LINES]
+    )
+
+    def turned(area):
+        return shapely.affinity.translate(
+            shapely.affinity.rotate(area, angle, origin=(6, 4.5)), 1.0, 1.5
+        )
+
+    return drawn(turned(walls | PILLAR), turned(ROOM))
+
+
+def write_map(folder, values, name="room", text=YAML):
+    Image.fromarray(values).save(folder / f"{name}.pgm")
+    path = folder / f"{name}.yaml"
+    path.write_text(text.format(image=f"{name}.pgm"))
+    return path
+
+
+def rings(plan: FloorPlan):
+    lines = [LineString([w.start, w.end]) for w in plan.walls]
+    return [
+        ring for ring in shapely.get_parts(shapely.polygonize(lines)) if ring.area < 1.0
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("angle", [0, 12, 30])
+def test_room_with_a_gap_and_a_pillar(angle: float, tmp_path) -> None:
+    imported = import_plan(write_map(tmp_path, room_values(angle)))
+    plan = imported.plan
+    assert plan.outline.area == pytest.approx(70.0, rel=0.01)
+    (pillar,) = rings(plan)
+    assert pillar.area == pytest.approx(np.pi * 0.09, rel=0.2)
+    long = [w for w in plan.walls if w.length_m > 1.0]
+    assert len(long) == 6
+    for wall in long:
+        turn = np.degrees(np.arctan2(*np.subtract(wall.end, wall.start)[::-1])) - angle
+        assert abs((turn + 45) % 90 - 45) < 0.4
+    assert all(w.thickness_m == pytest.approx(0.2, abs=PIXEL_M / 2) for w in long)
+    partitions = sorted(long, key=lambda w: w.length_m)[:2]
+    gap = LineString([partitions[0].start, partitions[0].end]).distance(
+        LineString([partitions[1].start, partitions[1].end])
+    )
+    assert gap == pytest.approx(1.0, abs=1.5 * PIXEL_M)
+    assert any("99 % of the pixels lie within 0.0" in note for note in imported.notes)
+
+
+def test_coordinates_are_those_of_the_map(tmp_path) -> None:
+    origin = import_plan(write_map(tmp_path, room_values())).origin
+    assert (origin.x, origin.y) == pytest.approx((1.0, 0.5), abs=0.01)
+
+
+def test_noise_is_left_out_and_small_gaps_closed(tmp_path) -> None:
+    values = room_values().copy()
+    rng = np.random.default_rng(3)
+    values[rng.integers(0, 240, 30), rng.integers(0, 280, 30)] = 0
+    holes = np.argwhere(values == 0)
+    values[tuple(holes[rng.integers(0, len(holes), 60)].T)] = 254
+    plan = import_plan(write_map(tmp_path, values)).plan
+    assert plan.outline.area == pytest.approx(70.0, rel=0.02)
+    assert sum(w.length_m for w in plan.walls if w.length_m > 1.0) == pytest.approx(40.0, rel=0.03)
+
+
+def test_modes_thresholds_and_negate_say_which_pixels_are_walls(tmp_path) -> None:
+    values = np.array([[0, 80, 120, 205, 254]], dtype=np.uint8)
+
+    def occupied_free(**changes):
+        text = YAML + "".join(f"{key}: {value}\n" for key, value in changes.items())
+        grid = read_grid(write_map(tmp_path, values, text=text), None)
+        return "".join(np.where(grid.occupied[0], "#", np.where(grid.free[0], ".", "?")))
+
+    assert occupied_free() == "##??."
+    assert occupied_free(mode="scale") == "##??."
+    assert occupied_free(occupied_thresh=0.4) == "###?."
+    assert occupied_free(free_thresh=0.2) == "##?.."
+    assert occupied_free(negate=1) == ".??##"
+    values = np.array([[0, 10, 66, 100, 255]], dtype=np.uint8)
+    assert occupied_free(mode="raw") == "..##?"
+
+
+def test_transparent_pixels_are_unknown(tmp_path) -> None:
+    rgba = np.zeros((1, 3, 4), dtype=np.uint8)
+    rgba[0, :, 3] = (255, 0, 255)
+    rgba[0, 2, :3] = 255
+    Image.fromarray(rgba, "RGBA").save(tmp_path / "a.png")
+    grid = read_grid(tmp_path / "a.png", 0.1)
+    assert (grid.occupied.tolist(), grid.free.tolist()) == (
+        [[True, False, False]],
+        [[False, False, True]],
+    )
+
+
+def test_a_plain_picture_needs_a_scale(tmp_path) -> None:
+    Image.fromarray(np.where(room_values() == 0, 0, 255).astype(np.uint8)).save(tmp_path / "a.png")
+    with pytest.raises(PlanError, match=r"no a.yaml beside .*--scale 0.05"):
+        import_plan(tmp_path / "a.png")
+    plan = import_plan(tmp_path / "a.png", ImportOptions(scale_m=0.1)).plan
+    assert plan.outline.area == pytest.approx(280.0, rel=0.01)
+
+
+def test_yaml_that_names_another_picture(tmp_path) -> None:
+    path = write_map(tmp_path, room_values(), text=YAML.replace("{image}", "map.pgm"))
+    with pytest.raises(PlanError, match=r'image = "map.pgm": there is no such file; room.pgm lies'):
+        import_plan(path)
+    imported = import_plan(tmp_path / "room.pgm")
+    assert imported.plan.outline.area == pytest.approx(70.0, rel=0.01)
+    assert any("names the picture map.pgm" in note for note in imported.notes)
+
+
+@pytest.mark.parametrize("image", ["../room.pgm", "/etc/passwd", "..", "room.yaml", "", "a\\0.pgm"])
+def test_pictures_elsewhere_are_refused(image: str, tmp_path) -> None:
+    folder = tmp_path / "below"
+    folder.mkdir()
+    Image.fromarray(room_values()).save(tmp_path / "room.pgm")
+    path = write_map(folder, room_values(), text=YAML.replace("{image}", f'"{image}"'))
+    with pytest.raises(PlanError, match="image"):
+        import_plan(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("resolution: 0.05", "", "resolution"),
+        ("resolution: 0.05", "resolution: 0", "above 0"),
+        ("resolution: 0.05", "resolution: .nan", "finite"),
+        ("origin: [-1.0, -2.0, 0.0]", "origin: [1, 2]", r"\[x, y, yaw\]"),
+        ("origin: [-1.0, -2.0, 0.0]", "origin: [a, b, c]", "finite number"),
+        ("negate: 0", "mode: colour", "unknown mode"),
+        ("free_thresh: 0.196", "free_thresh: 0.9", "free_thresh <= occupied_thresh"),
+        ("image: {image}", "image: [1]", "name of the picture"),
+        ("image: {image}", "image: {{", "not a map's YAML"),
+        ("image: {image}", "- 1", "not begin like"),
+        ("image: {image}", "image: !!python/object/apply:os.getcwd []", "not a map's YAML"),
+        ("resolution: 0.05", "resolution: 5", "no building.*--scale"),
+    ],
+)
+def test_yaml_files_that_are_wrong_say_where(old: str, new: str, message: str, tmp_path) -> None:
+    assert old in YAML
+    with pytest.raises(PlanError, match=message):
+        import_plan(write_map(tmp_path, room_values(), text=YAML.replace(old, new)))
+
+
+def png_of(width: int, height: int) -> bytes:
+    """Return a PNG whose header alone tells that it is large."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        body = kind + data
+        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
+
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0))
+    return (
+        b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", zlib.compress(b"\0")) + chunk(b"IEND", b"")
+    )
+
+
+BAD_PICTURES = {
+    "huge header": (b"P5 100000 100000 255\n", "a.pgm", "pixels"),
+    "larger header": (b"P5 999999999 999999999 255\n", "a.pgm", "pixels|too large|read"),
+    "cut short": (
+        b"P5 100 100 255\n" + bytes(50),
+        "a.pgm",
+        "cannot be read|not a picture|truncated",
+    ),
+    "no numbers": (b"P5 x y 255\n", "a.pgm", "not a picture"),
+    "negative": (b"P5 -5 7 255\n", "a.pgm", "not a picture|pixels"),
+    "text": (b"hello", "a.png", "does not begin like"),
+    "empty": (b"", "a.pgm", "empty"),
+    "bomb": (png_of(30_000, 30_000), "a.png", "pixels|too large"),
+    "white": (b"P5 20 20 255\n" + bytes([255]) * 400, "a.pgm", "no pixel is occupied"),
+    "a dot": (b"P5 3 3 255\n" + bytes([255] * 4 + [0] + [255] * 4), "a.pgm", "is no building"),
+    "dots": (b"P5 100 9 255\n" + (bytes(6) + bytes([255] * 88) + bytes(6)) * 9, "a.pgm", "no line"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_PICTURES)
+def test_bad_pictures_say_what_is_wrong(name: str, tmp_path) -> None:
+    data, file, message = BAD_PICTURES[name]
+    (tmp_path / file).write_bytes(data)
+    with pytest.raises(PlanError, match=message):
+        import_plan(tmp_path / file, ImportOptions(scale_m=0.05))
+
+
+def test_mutated_maps_are_plans_or_plan_errors(tmp_path) -> None:
+    path = write_map(tmp_path, room_values()[::3, ::3])
+    picture = tmp_path / "room.pgm"
+    samples = {path: path.read_bytes(), picture: picture.read_bytes()}
+    rng = random.Random(7)
+    for _ in range(60):
+        for file, sample in samples.items():
+            data = bytearray(sample)
+            for _ in range(rng.randint(0, 8)):
+                data[rng.randrange(min(len(data), 400))] = rng.randrange(256)
+            file.write_bytes(data)
+        try:
+            import_plan(path if rng.random() < 0.5 else picture)
+        except PlanError:
+            continue
+
+
+def test_thinning_keeps_what_is_connected_and_is_one_pixel_wide() -> None:
+    solid = np.zeros((60, 80), dtype=bool)
+    solid[10:17, 5:70] = solid[10:50, 30:38] = True
+    solid[45:50, 30:75] = True
+    thin = thinned(solid)
+    assert (thin <= solid).all()
+    lines = polylines(thin)
+    union = shapely.union_all(lines)
+    assert shapely.get_num_geometries(shapely.line_merge(union)) == len(lines)
+    assert union.buffer(0.1).geom_type == "Polygon"
+    assert (
+        shapely.hausdorff_distance(
+            union, shapely.MultiLineString([[(5, 13), (69, 13)], [(34, 13), (34, 47), (74, 47)]])
+        )
+        < 5
+    )
+
+
+def test_an_empty_picture_has_no_walls() -> None:
+    assert walls_of_picture(np.zeros((20, 20), dtype=bool), 1.5) == []

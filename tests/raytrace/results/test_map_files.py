@@ -1,0 +1,215 @@
+"""A map file is whole or it is refused, and opens without this project."""
+
+import os
+from dataclasses import fields, replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+
+from raytrace import Antenna, Grid, HalfWaveDipole, Isotropic, MapFileError, PatternTable, RadioMap, TraceConfig, Transmitter
+from raytrace.results import radio_map
+
+LAYERS = ("rss_dbm", "rss_coherent_dbm", "path_count")
+
+
+def small_map() -> RadioMap:
+    rng = np.random.default_rng(51)
+    grid = Grid.over((0.0, 0.0, 7.0, 5.0), 0.5, 2.0)
+    rss = rng.uniform(-120.0, -20.0, grid.shape)
+    rss[2, 3] = -np.inf
+    return RadioMap(
+        rss_dbm=rss,
+        rss_coherent_dbm=rss - rng.uniform(0.0, 9.0, grid.shape),
+        path_count=rng.integers(0, 10_000, grid.shape),
+        grid=grid,
+        transmitter=Transmitter((1.5, 2.25, 0.75), 17.5, 5.2e9, HalfWaveDipole(2.15)),
+        config=TraceConfig(5, 0),
+        provenance={"tracer_version": 1, "wall_time_s": 1.25, "material_edition": "none"},
+    ).with_plan("name = 'ein Plan mit Umlauten: äöü'\n", "ab" * 32)
+
+
+@pytest.fixture
+def saved(tmp_path: Path) -> Path:
+    path = tmp_path / "map.h5"
+    small_map().save(path)
+    return path
+
+
+THETA, PHI = np.linspace(0.0, 180.0, 91), np.linspace(0.0, 360.0, 181)
+ANTENNAS = [
+    HalfWaveDipole(),
+    HalfWaveDipole(2.15, (0.0, 1.0, 1.0)),
+    Isotropic(-3.0),
+    PatternTable.of_gain(THETA, PHI, np.add.outer(-THETA / 30.0, np.cos(np.radians(PHI)))),
+]
+
+
+@pytest.mark.parametrize("antenna", ANTENNAS)
+def test_a_map_comes_back_as_it_was(tmp_path: Path, antenna: Antenna) -> None:
+    first = small_map()
+    first = replace(first, transmitter=replace(first.transmitter, antenna=antenna))
+    first.save(tmp_path / "map.h5")
+    second = RadioMap.load(tmp_path / "map.h5")
+    for layer in LAYERS:
+        np.testing.assert_array_equal(getattr(first, layer), getattr(second, layer))
+        assert getattr(first, layer).dtype == getattr(second, layer).dtype
+    np.testing.assert_array_equal(first.grid.x, second.grid.x)
+    np.testing.assert_array_equal(first.grid.y, second.grid.y)
+    for name in ("transmitter", "config", "plan_text", "plan_sha256", "provenance"):
+        assert getattr(first, name) == getattr(second, name)
+    for name in ("height_m", "cell_size_m"):
+        assert getattr(first.grid, name) == getattr(second.grid, name)
+
+
+def test_plain_hdf5_shows_units_names_and_coordinates(saved: Path) -> None:
+    first = small_map()
+    with h5py.File(saved) as file:
+        for layer in LAYERS:
+            assert file[layer].attrs["units"] == ("1" if layer == "path_count" else "dBm")
+            assert file[layer].attrs["long_name"]
+            for axis, name in enumerate(("y", "x")):
+                scale = file[layer].dims[axis][0]
+                np.testing.assert_array_equal(scale[:], getattr(first.grid, name))
+                assert scale.attrs["units"] == "m"
+                assert scale.is_scale
+        assert file.attrs["plan_text"] == first.plan_text
+        assert file.attrs["plan_sha256"] == first.plan_sha256
+        assert file.attrs["max_reflections"] == 5
+        assert file.attrs["frequency_hz"] == 5.2e9
+        assert file.attrs["made_with_material_edition"] == "none"
+
+
+def full_map() -> RadioMap:
+    """A map with every layer there is."""
+    first = small_map()
+    rng = np.random.default_rng(52)
+    optional = [name for name, layer in radio_map.LAYERS.items() if not layer.required]
+    return replace(first, **{name: rng.uniform(0.0, 1.0, first.grid.shape) for name in optional})
+
+
+def test_optional_layers_come_back_and_others_stay_none(tmp_path: Path) -> None:
+    first = full_map()
+    assert list(first.layers) == list(radio_map.LAYERS)
+    first.save(tmp_path / "map.h5")
+    second = RadioMap.load(tmp_path / "map.h5")
+    for name, layer in first.layers.items():
+        np.testing.assert_array_equal(layer, second.layers[name])
+    assert small_map().delay_spread_s is None
+    assert list(small_map().layers) == list(LAYERS)
+
+
+def test_every_layer_is_a_field_of_the_map() -> None:
+    assert set(radio_map.LAYERS) <= {field.name for field in fields(RadioMap)}
+
+
+def test_xarray_opens_the_file_with_coordinates_and_units(tmp_path: Path) -> None:
+    first = full_map()
+    first.save(tmp_path / "map.h5")
+    with xr.open_dataset(tmp_path / "map.h5", engine="h5netcdf", phony_dims=None) as data:
+        assert data["delay_spread_s"].dims == ("y", "x")
+        assert data["delay_spread_s"].attrs["units"] == "s"
+        np.testing.assert_array_equal(data["x"], first.grid.x)
+        cell = data["rss_dbm"].sel(x=first.grid.x[3], y=first.grid.y[1])
+        assert float(cell) == first.rss_dbm[1, 3]
+
+
+def test_data_set_is_the_file_as_xarray_reads_it(saved: Path) -> None:
+    mine = RadioMap.load(saved).to_xarray()
+    assert float(mine["z"]) == 2.0
+    with xr.open_dataset(saved, engine="h5netcdf") as data:
+        for name in (*LAYERS, "x", "y"):
+            xr.testing.assert_equal(data[name], mine[name].drop_vars("z", errors="ignore"))
+            assert data[name].attrs == mine[name].attrs
+        assert set(data.attrs) == set(mine.attrs)
+
+
+def test_a_file_of_before_the_optional_layers_and_axes_is_read(saved: Path) -> None:
+    with h5py.File(saved, "r+") as file:
+        del file.attrs["transmit_antenna_axis"]
+    assert RadioMap.load(saved).transmitter == small_map().transmitter
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.2, 0.5, 0.9, 0.999])
+def test_a_truncated_file_is_refused(saved: Path, share: float) -> None:
+    content = saved.read_bytes()
+    saved.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(MapFileError, match=r"map\.h5.*anew"):
+        RadioMap.load(saved)
+
+
+@pytest.mark.parametrize("content", [b"", b"x,y,rss\n1,2,3\n", b"\x89HDF\r\n\x1a\n" + bytes(999)])
+def test_a_file_of_another_kind_is_refused(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "map.h5"
+    path.write_bytes(content)
+    with pytest.raises(MapFileError, match=r"map\.h5"):
+        RadioMap.load(path)
+
+
+def test_hdf5_of_another_kind_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "map.h5"
+    with h5py.File(path, "w") as file:
+        file["rss_dbm"] = np.zeros((3, 3))
+    with pytest.raises(MapFileError, match=r"map\.h5.*not a radio map"):
+        RadioMap.load(path)
+
+
+@pytest.mark.parametrize("version", [0, 2, "1"])
+def test_another_version_is_refused(saved: Path, version: int | str) -> None:
+    with h5py.File(saved, "r+") as file:
+        file.attrs["format_version"] = version
+    with pytest.raises(MapFileError, match=rf"map\.h5.*{version}.*anew"):
+        RadioMap.load(saved)
+
+
+@pytest.mark.parametrize("name", [*LAYERS, "x", "y"])
+def test_a_missing_dataset_is_named(saved: Path, name: str) -> None:
+    with h5py.File(saved, "r+") as file:
+        del file[name]
+    with pytest.raises(MapFileError, match=rf"map\.h5.*{name}.*anew"):
+        RadioMap.load(saved)
+
+
+@pytest.mark.parametrize("name", ["format_version", "frequency_hz", "transmit_antenna"])
+def test_a_missing_attribute_is_named(saved: Path, name: str) -> None:
+    with h5py.File(saved, "r+") as file:
+        del file.attrs[name]
+    with pytest.raises(MapFileError, match=rf"map\.h5.*{name}.*anew"):
+        RadioMap.load(saved)
+
+
+@pytest.mark.parametrize("data", [np.full((10, 14), np.nan), np.zeros((3, 3)), np.zeros(140)])
+def test_a_layer_that_does_not_fit_is_refused(saved: Path, data: np.ndarray) -> None:
+    with h5py.File(saved, "r+") as file:
+        del file["rss_dbm"]
+        file["rss_dbm"] = data
+    with pytest.raises(MapFileError, match=r"map\.h5.*rss_dbm"):
+        RadioMap.load(saved)
+
+
+def test_a_missing_file_is_just_missing(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"nowhere\.h5"):
+        RadioMap.load(tmp_path / "nowhere.h5")
+
+
+def test_a_save_that_fails_leaves_the_old_file_and_nothing_else(saved: Path) -> None:
+    before = saved.read_bytes()
+    broken = replace(small_map(), provenance={"what": object()})
+    with pytest.raises(TypeError):
+        broken.save(saved)
+    assert saved.read_bytes() == before
+    assert os.listdir(saved.parent) == ["map.h5"]
+
+
+def test_a_save_replaces_the_old_file(saved: Path) -> None:
+    louder = replace(small_map(), rss_dbm=small_map().rss_dbm + 1.0)
+    louder.save(saved)
+    np.testing.assert_array_equal(RadioMap.load(saved).rss_dbm, louder.rss_dbm)
+    assert os.listdir(saved.parent) == ["map.h5"]
+
+
+def test_folders_are_made_on_the_way(tmp_path: Path) -> None:
+    small_map().save(tmp_path / "new" / "folder" / "map.h5")
+    assert (tmp_path / "new" / "folder" / "map.h5").exists()

@@ -1,0 +1,143 @@
+"""The sensitivity study: its alternatives, its arithmetic, its figure."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rssnav import LocationAgent, QLearning, RssAgent, train
+from rssnav.experiments.paper.data import AGENTS, Configuration
+from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
+from rssnav.experiments.studies import sensitivity
+from rssnav.experiments.studies.sensitivity import figure
+from rssnav.experiments.studies.sensitivity.alternatives import (
+    ALTERNATIVES,
+    FLOWN,
+    OURS,
+    Alternative,
+    Outcome,
+    outcomes_of,
+)
+from rssnav.experiments.studies.sensitivity.tables import outcome_table, summary_table
+
+KEY = Configuration(1, "rss", 1)
+OPTIONS = {"runs": 3, "seed": 0, "threads": 1}
+QUICK = Alternative("decay", "quick", QLearning(eta=1e-3, max_steps=500), episodes=None)
+NONE = np.empty(0)
+
+
+def outcome(alternative, key, lengths_m, runs=2, episodes=(10.0, 20.0)):
+    lengths = np.array(lengths_m, dtype=float)
+    flown = np.array(episodes, dtype=float)
+    return Outcome(alternative, key, runs, flown, 100.0 * flown, lengths, lengths / 2.0)
+
+
+def test_every_alternative_differs_from_our_reading_in_one_respect():
+    for alternative in ALTERNATIVES:
+        changed = [
+            name
+            for name in QLearning.__dataclass_fields__
+            if getattr(alternative.learning, name) != getattr(QLearning(), name)
+        ]
+        others = [alternative.coherent, alternative.episodes is not None]
+        assert len(changed) + sum(others) == 1 or set(changed) == {"decay", "eta"}
+    assert len({alternative.label for alternative in ALTERNATIVES}) == len(ALTERNATIVES)
+
+
+def test_a_map_of_fields_concerns_the_rss_agent_only():
+    coherent = next(alternative for alternative in ALTERNATIVES if alternative.coherent)
+    assert [agent for agent in AGENTS if coherent.concerns(Configuration(1, agent, 1))] == ["rss"]
+
+
+def test_outcomes_are_those_of_the_training(room_world):
+    (measured,) = outcomes_of(QUICK, KEY, room_world, **OPTIONS)
+    result = train(
+        room_world,
+        RssAgent(),
+        runs=3,
+        episodes=20_000,
+        learning=QUICK.learning,
+        until_converged=True,
+        min_episodes=1,
+    )
+    assert np.array_equal(measured.episodes, result.converged_episode)
+    assert np.array_equal(measured.steps, result.converged_steps)
+    assert np.array_equal(measured.length_m, result.path_length_m[result.reached])
+
+
+def test_flown_trajectories_are_the_third_of_the_equal_flights(room_world, monkeypatch):
+    """Greedy and flown lengths agree once the policy no longer explores."""
+    key = Configuration(1, "location", 1)
+    _, flown = outcomes_of(OURS, key, room_world, **OPTIONS)
+    result = train(
+        room_world, LocationAgent(), runs=3, episodes=20_000, until_converged=True, min_episodes=1
+    )
+    assert flown.alternative is FLOWN
+    for run, k in enumerate(result.converged_episode):
+        assert len(set(result.steps[run, k - 3 : k].tolist())) == 1
+        assert len(set(result.diagonal_steps[run, k - 3 : k].tolist())) == 1
+        assert flown.length_m[run] == result.episode_length_m[run, k - 1]
+
+
+def test_a_world_that_cannot_be_learnt_is_an_obstacle(room_world):
+    dim = replace(room_world, rss_dbm=room_world.rss_dbm - 50.0)
+    (measured,) = outcomes_of(QUICK, KEY, dim, **OPTIONS)
+    assert "no cell with RSS > -21 dBm" in measured.obstacle
+    assert measured.length_m.size == measured.episodes.size == 0
+
+
+def test_summary_compares_with_our_reading():
+    other = Configuration(1, "location", 1)
+    paper_m, other_m = PATH_LENGTH_M[KEY], PATH_LENGTH_M[other]
+    outcomes = [
+        outcome(OURS, KEY, [paper_m, paper_m]),
+        outcome(OURS, other, [other_m, other_m]),
+        outcome(QUICK, KEY, [1.2 * paper_m, 1.2 * paper_m], episodes=(30.0, 30.0)),
+        outcome(QUICK, other, [other_m], episodes=(10.0,)),
+    ]
+    ours, quick = summary_table(outcomes).records()
+    assert (ours["agree"], ours["configurations"], ours["length_ratio"]) == (2, 2, 1.0)
+    assert (quick["runs"], quick["converged"], quick["arrive"]) == (4, 3, 3)
+    assert quick["episode_ratio"] == pytest.approx(2.0)
+    assert quick["length_ratio"] == pytest.approx(1.2)
+    assert quick["agree"] == 0
+
+
+def test_outcome_table_has_an_interval_and_survives_runs_that_never_arrive():
+    outcomes = [
+        outcome(OURS, KEY, [100.0, 102.0]),
+        outcome(QUICK, KEY, [110.0, 112.0]),
+        outcome(FLOWN, KEY, [], episodes=()),
+    ]
+    _, quick, flown = outcome_table(outcomes).records()
+    assert quick["difference_m"] == pytest.approx(10.0)
+    assert quick["difference_low_m"] <= 10.0 <= quick["difference_high_m"]
+    assert flown["mean_m"] is None
+    assert flown["converged"] == 0
+
+
+def test_figure_has_a_marker_per_outcome_and_hollow_ones_where_runs_do_not_converge():
+    outcomes = [
+        outcome(OURS, KEY, [100.0, 102.0]),
+        outcome(QUICK, KEY, [110.0, 112.0], episodes=(10.0,)),
+        outcome(FLOWN, KEY, [], episodes=()),
+    ]
+    drawn = figure.draw(outcomes)
+    ax = drawn.axes[0]
+    filled = [bar.lines[0].get_markerfacecolor() != "white" for bar in ax.containers]
+    assert filled == [True, False]
+    assert [label.get_text() for label in ax.get_yticklabels()] == [
+        alternative.label for alternative in (OURS, QUICK, FLOWN)
+    ]
+
+
+def test_the_whole_study_runs(small_study, monkeypatch):
+    monkeypatch.setattr(sensitivity, "ALTERNATIVES", (QUICK,))
+    monkeypatch.setattr(sensitivity, "_ORDER", (OURS, FLOWN, QUICK))
+    monkeypatch.setattr(sensitivity, "SPEEDS", (1,))
+    seen = []
+    study = sensitivity.run(small_study, quick=True, progress=lambda *step: seen.append(step))
+    assert seen[-1] == ("alternatives", 8, 8)
+    assert len(study.tables[0].rows) == 3
+    assert len(study.tables[1].rows) == 12
+    assert (small_study / "figures" / "sensitivity.png").is_file()

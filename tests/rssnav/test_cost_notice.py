@@ -1,0 +1,55 @@
+"""A user who asks for a long map is told beforehand; one who asks for a short one is not."""
+
+import pytest
+
+import floorplans
+from raytrace import CostEstimate, Grid, TraceConfig, Transmitter
+from rssnav import cost_notice
+from rssnav.maps import make_map, scene_of
+
+
+def test_a_quick_map_is_not_announced() -> None:
+    heard: list[str] = []
+    make_map(floorplans.load("flat"), config=TraceConfig(1, 0), notice=heard.append)
+    assert heard == []
+
+
+def test_a_long_map_is_announced_before_it_is_traced(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cost_notice, "LONG_S", 0.0)
+    monkeypatch.setattr(cost_notice, "MOST_QUICK_WORK", 0.0)
+    heard: list[str] = []
+    progress: list[int] = []
+
+    def notice(words: str) -> None:
+        assert not progress
+        heard.append(words)
+
+    make_map(
+        floorplans.load("flat"),
+        config=TraceConfig(2, 1),
+        notice=notice,
+        progress=lambda done, _total: progress.append(done),
+    )
+    assert len(heard) == 1
+    assert heard[0].startswith("this map will take about")
+    assert "108 cells" in heard[0]
+    assert progress
+
+
+def test_an_estimate_in_words() -> None:
+    grid = Grid.over((0.0, 0.0, 150.0, 100.0), 0.5, 1.5)
+    words = cost_notice.sentence(CostEstimate(123_456_789, 250.0, 10), grid)
+    assert words.startswith(
+        "this map will take about 4 minutes: some 123 million paths over 60 000"
+    )
+    assert "9 000 000 paths" in cost_notice.sentence(CostEstimate(9_000_000, 70.0, 10), grid)
+
+
+def test_the_paper_s_maps_are_not_worth_an_estimate() -> None:
+    for name in ("scenario1", "scenario2"):
+        plan = floorplans.load(name)
+        grid = Grid.over(plan.bounds, 1.0, 2.0)
+        words = cost_notice.announcement(
+            scene_of(plan), Transmitter(plan.source), grid, TraceConfig()
+        )
+        assert words is None
