@@ -10,7 +10,12 @@ from shapely.geometry.base import BaseGeometry
 
 from raytrace.errors import SceneError
 from raytrace.geometry.cells import CellComplex, cut_into_cells
-from raytrace.geometry.edges import LevelEdge, UprightEdge, find_level_edges, find_upright_edges
+from raytrace.geometry.edges import (
+    HorizontalEdge,
+    VerticalEdge,
+    find_horizontal_edges,
+    find_vertical_edges,
+)
 from raytrace.geometry.sheets import read_sheets
 from raytrace.kernels.plan_view import PlanView
 from raytrace.radio.itu import DEFAULT_EDITION
@@ -33,7 +38,7 @@ class Scene:
         Index into `slabs`.
     cells
         The plan view cut into convex cells.
-    upright_edges, level_edges
+    vertical_edges, horizontal_edges
         Where it diffracts.
     material_edition
         The edition of ITU-R P.2040 that built-in materials were taken from.
@@ -45,8 +50,8 @@ class Scene:
     floor_material: int
     ceiling_material: int
     cells: CellComplex
-    upright_edges: tuple[UprightEdge, ...]
-    level_edges: tuple[LevelEdge, ...]
+    vertical_edges: tuple[VerticalEdge, ...]
+    horizontal_edges: tuple[HorizontalEdge, ...]
     material_edition: str = DEFAULT_EDITION
 
     @property
@@ -96,8 +101,8 @@ class Scene:
             sheets.floor_material,
             sheets.ceiling_material,
             cells,
-            find_upright_edges(cells, sheets.height_m),
-            find_level_edges(cells),
+            find_vertical_edges(cells, sheets.height_m),
+            find_horizontal_edges(cells),
             edition,
         )
 

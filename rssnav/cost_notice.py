@@ -11,7 +11,7 @@ MOST_QUICK_WORK = 2e6
 
 def work(scene: Scene, grid: Grid, config: TraceConfig) -> float:
     """Return a rough measure of a map's work: cells times edges, doubled by every reflection."""
-    n_edges = len(scene.upright_edges) + len(scene.level_edges)
+    n_edges = len(scene.vertical_edges) + len(scene.horizontal_edges)
     edges = 1 + n_edges * config.max_diffractions
     return grid.x.size * grid.y.size * edges * 2.0 ** (config.max_reflections - 6)
 

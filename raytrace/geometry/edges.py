@@ -27,7 +27,7 @@ STRAIGHT_RAD = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class UprightEdge:
+class VerticalEdge:
     """A wedge with a vertical edge.
 
     Attributes
@@ -61,7 +61,7 @@ class UprightEdge:
 
 
 @dataclass(frozen=True)
-class LevelEdge:
+class HorizontalEdge:
     """The horizontal rim of a wall: a half plane.
 
     Attributes
@@ -89,7 +89,7 @@ class _Wedge(NamedTuple):
     n_material: int
 
 
-def find_upright_edges(cells: CellComplex, height_m: float) -> tuple[UprightEdge, ...]:
+def find_vertical_edges(cells: CellComplex, height_m: float) -> tuple[VerticalEdge, ...]:
     """Return every vertical edge of a building that diffracts."""
     walls_at: dict[int, list[tuple[float, Profile]]] = {}
     for a, b, profile in cells.wall_segments:
@@ -122,7 +122,7 @@ def _edges_at(
     height_m: float,
     around: list[tuple[int, float]],
     cells: CellComplex,
-) -> Iterator[UprightEdge]:
+) -> Iterator[VerticalEdge]:
     x, y = cells.vertices[vertex]
     levels = sorted({0.0, height_m} | {t for _, profile in walls for t in profile.tops})
     standing: list[tuple[_Wedge, float, float]] = []
@@ -134,7 +134,7 @@ def _edges_at(
     for wedge, z_low, z_high in standing:
         inside = [c for c, azimuth in around if (azimuth - wedge.o_face) % TURN < wedge.angle]
         if inside:
-            yield UprightEdge(
+            yield VerticalEdge(
                 vertex, float(x), float(y), wedge.o_face, wedge.angle / np.pi,
                 wedge.o_material, wedge.n_material, z_low, z_high, np.array(inside, np.int64),
             )  # fmt: skip
@@ -149,15 +149,15 @@ def _wedges(walls: list[tuple[float, Profile]], z: float) -> Iterator[_Wedge]:
             yield _Wedge(start, angle, o_material, n_material)
 
 
-def find_level_edges(cells: CellComplex) -> tuple[LevelEdge, ...]:
+def find_horizontal_edges(cells: CellComplex) -> tuple[HorizontalEdge, ...]:
     """Return every horizontal rim of a wall over or under an opening."""
     view = cells.view
-    edges: list[LevelEdge] = []
+    edges: list[HorizontalEdge] = []
     for e in np.flatnonzero((view.kind == PARTIAL) & (view.twin > np.arange(len(view.twin)))):
         bins = slice(view.profile_bins[view.profile[e]], view.profile_bins[view.profile[e] + 1])
         materials = view.bin_material[bins].tolist()
         for z, (below, above) in zip(view.bin_top[bins], pairwise(materials), strict=False):
             if (below == OPEN) != (above == OPEN):
                 sides = (int(e), int(view.twin[e]))
-                edges.append(LevelEdge(sides, float(z), above != OPEN, max(below, above)))
+                edges.append(HorizontalEdge(sides, float(z), above != OPEN, max(below, above)))
     return tuple(edges)

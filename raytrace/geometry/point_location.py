@@ -13,7 +13,7 @@ from raytrace.kernels.beams import (
 )
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import WIDTH
-from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView, material_at
+from raytrace.kernels.plan_view import GRAZING_M, Floats, Ints, PlanView, material_at
 
 
 @jit()
@@ -43,10 +43,10 @@ def cells_around(view: PlanView, xy: Floats) -> tuple[Ints, Floats]:
             touched = 0
             for e in range(view.cell_edges[c], view.cell_edges[c + 1]):
                 inside, nx, ny = edge_side(view, e, xy[k, 0], xy[k, 1])
-                if inside <= -TIE_M:
+                if inside <= -GRAZING_M:
                     touched = -1
                     break
-                if inside < TIE_M:
+                if inside < GRAZING_M:
                     ways[touched, 0], ways[touched, 1] = nx, ny
                     touched += 1
             if touched < 0:
@@ -68,7 +68,7 @@ def wall_around(view: PlanView, cells: Ints, place: tuple[float, float, float]) 
     for cell in cells:
         for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
             inside, _, _ = edge_side(view, e, x, y)
-            on_wall = view.profile[e] >= 0 and inside < TIE_M
+            on_wall = view.profile[e] >= 0 and inside < GRAZING_M
             if on_wall and material_at(view, view.profile[e], z) >= 0:
                 return e
     return -1

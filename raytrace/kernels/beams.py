@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import WIDTH, Lanes, any_of, lanes_of, load, minimum, store
 from raytrace.kernels.plan_view import (
+    GRAZING_M,
     PARTIAL,
-    TIE_M,
     Floats,
     Ints,
     PlanView,
@@ -216,7 +216,9 @@ def is_wide(beam: Floats, window: Window) -> bool:
     px, py = beam[IMAGE_X], beam[IMAGE_Y]
     ax, ay, bx, by = window[0] - px, window[1] - py, window[2] - px, window[3] - py
     width = cross(ax, ay, bx, by)
-    return width > 0.0 and width * width > TIE_M * TIE_M * max(ax * ax + ay * ay, bx * bx + by * by)
+    return width > 0.0 and width * width > GRAZING_M * GRAZING_M * max(
+        ax * ax + ay * ay, bx * bx + by * by
+    )
 
 
 @jit(inner=True)
@@ -355,15 +357,15 @@ def lit_share(
     if tree.link[i, EDGE] >= 0:
         for side in range(2):
             inside, nx, ny = window_side(tree.beam[i], x, y, side)
-            if inside <= -TIE_M:
+            if inside <= -GRAZING_M:
                 return 0.0
-            if inside < TIE_M:
+            if inside < GRAZING_M:
                 ways[n, 0], ways[n, 1] = nx, ny
                 n += 1
     if cell >= 0:
         for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
             inside, nx, ny = edge_side(view, e, x, y)
-            if inside < TIE_M:
+            if inside < GRAZING_M:
                 ways[n, 0], ways[n, 1] = nx, ny
                 n += 1
     return share_within(ways, n)
@@ -420,16 +422,16 @@ def hit_points(
             if not is_root:
                 x, y = load(targets.x[k:]), load(targets.y[k:])
                 nearest = inside_window(tree.beam[i], x, y)
-                if not any_of(nearest > -TIE_M):
+                if not any_of(nearest > -GRAZING_M):
                     continue
             store(inside, nearest)
             if n + WIDTH > len(pair):
                 pair, share = enlarged(pair), enlarged(share)
             for at in range(k, min(k + WIDTH, last)):
-                if inside[at - k] <= -TIE_M:
+                if inside[at - k] <= -GRAZING_M:
                     continue
                 lit = 1.0
-                if inside[at - k] < TIE_M or targets.share[at] < 1.0:
+                if inside[at - k] < GRAZING_M or targets.share[at] < 1.0:
                     border = cell if targets.share[at] < 1.0 else -1
                     lit = lit_share(view, tree, i, targets.x[at], targets.y[at], border, ways)
                 if lit > 0.0:

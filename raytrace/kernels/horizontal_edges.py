@@ -31,7 +31,7 @@ from raytrace.kernels.lanes import (
     store,
     where,
 )
-from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView
+from raytrace.kernels.plan_view import GRAZING_M, Floats, Ints, PlanView
 from raytrace.kernels.strips import StripTree, from_frame
 from raytrace.kernels.tracing import (
     Block,
@@ -255,7 +255,7 @@ def sum_level_edge(
             if budget < 0:
                 break
             low, high = maximum(seen.low, legs_in.low[p]), minimum(seen.high, legs_in.high[p])
-            share_here = where(high - low > TIE_M, block.share, 0.0)
+            share_here = where(high - low > GRAZING_M, block.share, 0.0)
             if not any_of(share_here > 0.0):
                 continue
             x, h = legs_in.x[p], legs_in.h[p]
@@ -288,8 +288,8 @@ def sum_level_edge(
 def share_inside(u: Lanes, low: Lanes, high: Lanes) -> Lanes:
     """1 for points inside the stretch from low to high, one half at its ends, else 0."""
     inside = minimum(u - low, high - u)
-    half = where(inside > -TIE_M, lanes_of(0.5), 0.0)
-    return where(inside >= TIE_M, 1.0, half)
+    half = where(inside > -GRAZING_M, lanes_of(0.5), 0.0)
+    return where(inside >= GRAZING_M, 1.0, half)
 
 
 @jit(inline=True)
@@ -533,7 +533,7 @@ def over_rim(
     rows = work.room.rows
     source = face_angles(rim.wedge, lanes_of(z_in * per_in), lanes_of(h_in * per_in), rows)
     at = face_angles(rim.wedge, z_out * per_out, h_out * per_out, rows)
-    tie = (abs(h_in) + h_out) * per_out * (0.5 * TIE_M * per_in)
+    tie = (abs(h_in) + h_out) * per_out * (0.5 * GRAZING_M * per_in)
     terms = wedge_terms(rim.wedge, at, source, tie)
     product = path.before * path.after / (path.before + path.after)
     spread = sqrt((4.0 * math.pi / radio.wavelength) * product) * beta[0]

@@ -15,7 +15,7 @@ Ints = NDArray[np.int64]
 WALL, PARTIAL, PORTAL = 0, 1, 2
 """Kinds of cell edges: solid at every height, open at some, open at all."""
 
-TIE_M = 1e-7
+GRAZING_M = 1e-7
 """A ray that passes a corner or a rim no further off than this goes through it [m]. What differs
 on its two sides then counts half on either (docs/conventions.md, "Ties")."""
 

@@ -42,7 +42,7 @@ from raytrace.kernels.lanes import (
     store,
     where,
 )
-from raytrace.kernels.plan_view import TIE_M, Floats, Ints, PlanView
+from raytrace.kernels.plan_view import GRAZING_M, Floats, Ints, PlanView
 
 STEEPEST = 1e5
 """Largest |m| of a ray that leaves a level edge."""
@@ -356,7 +356,7 @@ def hit_from_strip(
         for k in range(targets.cell_points[cell], last, WIDTH):
             x, h = in_frame(tree.frame[i], load(targets.x[k:]), load(targets.y[k:]))
             low, high = stretch_through(rays, x, h)
-            lit = (high - low > SLIVER_M) & (h > TIE_M)
+            lit = (high - low > SLIVER_M) & (h > GRAZING_M)
             if not any_of(lit):
                 continue
             for row, column in enumerate((x, h, where(lit, low, 0.0), where(lit, high, 0.0))):

@@ -27,7 +27,7 @@ from raytrace.kernels.lanes import (
     store,
     where,
 )
-from raytrace.kernels.plan_view import TIE_M, WALL, Floats, Ints, PlanView, cross
+from raytrace.kernels.plan_view import GRAZING_M, WALL, Floats, Ints, PlanView, cross
 
 REFLECT_WALL, REFLECT_PARTIAL, PASS_PARTIAL, PASS_WALL = 0, 1, 2, 3
 """What a leg does at an item: is reflected by a wall, by a partial wall, passes one that is open
@@ -43,7 +43,7 @@ KIND, WHAT = range(2)
 MISFIT = -1e6
 """Number of walls that a leg goes through whose heights rule it out; it stays below 0."""
 
-NUDGE_M = 2.0 * TIE_M
+NUDGE_M = 2.0 * GRAZING_M
 """How far above and below a leg that touches a rim it is looked at."""
 
 LOOKS = (0.0, -NUDGE_M, NUDGE_M)
@@ -194,7 +194,7 @@ def at_rim(view: PlanView, profile: int, z: Lanes) -> Mask:
     """Which heights are that of a rim of a profile."""
     near = none_chosen()
     for k in range(view.profile_bins[profile], view.profile_bins[profile + 1] - 1):
-        near = near | (absolute(z - view.bin_top[k]) < TIE_M)
+        near = near | (absolute(z - view.bin_top[k]) < GRAZING_M)
     return near
 
 

@@ -28,7 +28,7 @@ from raytrace.kernels.lanes import (
     sqrt,
     where,
 )
-from raytrace.kernels.plan_view import TIE_M, Floats, Ints
+from raytrace.kernels.plan_view import GRAZING_M, Floats, Ints
 from raytrace.kernels.tracing import (
     Record,
     Room,
@@ -254,7 +254,7 @@ def pair_met(
         beyond = (z_edge <= edge.z_low) | (z_edge >= edge.z_high)
         through = where(beyond, MISFIT, through)
         inside = minimum(absolute(z_edge - edge.z_low), absolute(z_edge - edge.z_high))
-        touching = inside < TIE_M
+        touching = inside < GRAZING_M
     if pair.constrained_in:
         met, at_rims = walls_met(trace.plan, pair.leg_in, pair.n_in, z_root, slope, height, nudge)
         through, touching = through + met, touching | at_rims
@@ -378,9 +378,9 @@ def sum_upright_edge(
             (tree.beam[i, IMAGE_Y] - block.y) * per_length,
         )
         angles = angles_towards(edge, ux, uy, room.rows)
-        tie = (0.5 * TIE_M) * per_length
+        tie = (0.5 * GRAZING_M) * per_length
         constrained_out = is_constrained(leg, n)
-        off_edge = where(length < TIE_M, 0.0, block.share)
+        off_edge = where(length < GRAZING_M, 0.0, block.share)
         bound_out = lanes_of(1.0)
         if trace.least_power > 0.0:
             bound_out = leg_bound(trace, leg, n, length, tree.link[i, ORDER])

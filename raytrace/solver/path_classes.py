@@ -11,11 +11,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.geometry.edges import LevelEdge, UprightEdge
+from raytrace.geometry.edges import HorizontalEdge, VerticalEdge
 from raytrace.kernels.beams import ORDER, Hits, Tree, grow_tree, hit_points
 from raytrace.kernels.horizontal_edges import Rim, RimLegsIn, new_work, sum_level_edge
 from raytrace.kernels.path_points import level_points, reflection_points, upright_points
-from raytrace.kernels.plan_view import TIE_M
+from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.reflections import sum_reflections
 from raytrace.kernels.strips import StripTree, edge_frame, grow_strips, hit_from_strip
 from raytrace.kernels.tracing import Record, Sums, new_room, no_record
@@ -94,10 +94,10 @@ class Reflections:
         reflection_points(trace, tree, self._hits, record, points, kinds)
 
 
-class OverUprightEdge:
+class OverVerticalEdge:
     """Every path that one vertical edge diffracts."""
 
-    def __init__(self, tracing: Tracing, edge: UprightEdge) -> None:
+    def __init__(self, tracing: Tracing, edge: VerticalEdge) -> None:
         self._tracing = tracing
         self._cells = edge.cells
         self._vertex = edge.vertex
@@ -106,11 +106,11 @@ class OverUprightEdge:
             new_wedge(edge.wedge_n, edge.o_material, edge.n_material),
         )  # fmt: skip
 
-    def _heights(self, edge: UprightEdge) -> tuple[float, float]:
+    def _heights(self, edge: VerticalEdge) -> tuple[float, float]:
         """Heights between which a path may cross; floor and ceiling are no ends of an edge."""
-        low = edge.z_low if edge.z_low > TIE_M else -1.0
+        low = edge.z_low if edge.z_low > GRAZING_M else -1.0
         height = self._tracing.scene.height_m
-        return low, edge.z_high if edge.z_high < height - TIE_M else height + 1.0
+        return low, edge.z_high if edge.z_high < height - GRAZING_M else height + 1.0
 
     @cached_property
     def _legs_in(self) -> LegsIn:
@@ -160,10 +160,10 @@ class OverUprightEdge:
         upright_points(trace, self._edge, legs, tree, self._hits, record, points, kinds)
 
 
-class OverLevelEdge:
+class OverHorizontalEdge:
     """Every path that leaves one side of a level edge (side 0 or 1 of its plan edges)."""
 
-    def __init__(self, tracing: Tracing, edge: LevelEdge, side: int) -> None:
+    def __init__(self, tracing: Tracing, edge: HorizontalEdge, side: int) -> None:
         self._tracing = tracing
         self._near, self._far = edge.plan_edges[side], edge.plan_edges[1 - side]
         self._rim = Rim(
@@ -275,10 +275,10 @@ def all_families(tracing: Tracing) -> list[Family]:
     view = tracing.trace.plan
     lit = np.bincount(tracing.corners.pair[:, 0], minlength=int(view.vertex.max()) + 1)
     rims = np.bincount(tracing.rims[:, 0], minlength=len(view.line))
-    upright = [(lit[e.vertex], OverUprightEdge(tracing, e)) for e in tracing.scene.upright_edges]
+    upright = [(lit[e.vertex], OverVerticalEdge(tracing, e)) for e in tracing.scene.vertical_edges]
     level = [
-        (rims[list(e.plan_edges)].sum(), OverLevelEdge(tracing, e, side))
-        for e in tracing.scene.level_edges
+        (rims[list(e.plan_edges)].sum(), OverHorizontalEdge(tracing, e, side))
+        for e in tracing.scene.horizontal_edges
         for side in (0, 1)
     ]
     by_legs = sorted([*upright, *level], key=lambda counted: -counted[0])

@@ -9,7 +9,7 @@ from raytrace.errors import SceneError
 from raytrace.geometry.point_location import bounces_needed, cells_around, targets_in, wall_around
 from raytrace.grid import TraceConfig
 from raytrace.kernels.beams import Hits, Targets, Tree, grow_tree, hit_corners, hit_partial_walls
-from raytrace.kernels.plan_view import TIE_M
+from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.tracing import Trace
 from raytrace.kernels.unfolding import image_heights
 from raytrace.radio.antennas import Antenna
@@ -95,7 +95,7 @@ def prepare(
         max_walls=config.max_transmissions,
         least_power=10.0 ** ((config.min_power_dbm - source.power_dbm) / 10.0),
     )  # fmt: skip
-    band = [z, *heights, *(e.z for e in scene.level_edges)]
+    band = [z, *heights, *(e.z for e in scene.horizontal_edges)]
     bounces = bounces_needed(view, min(band), max(band), config.max_transmissions > 0)
     tree = grow_tree(view, bounces, x, y, root, most)
     rims, stretches = hit_partial_walls(view, tree)
@@ -121,6 +121,6 @@ def _cells_of_source(scene: Scene, source: Transmitter) -> NDArray[np.int64]:
         x1, y1, x2, y2 = view.ends[e]
         raise SceneError(
             f"the transmitter at {source.position} stands in the wall from ({x1:g}, {y1:g}) to "
-            f"({x2:g}, {y2:g}): move it away by more than {TIE_M:g} m"
+            f"({x2:g}, {y2:g}): move it away by more than {GRAZING_M:g} m"
         )
     return places[:, 1]
