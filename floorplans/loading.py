@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from importlib import resources
 from itertools import accumulate, pairwise
 from math import dist
@@ -16,10 +15,11 @@ from floorplans.checks.walls import check_openings, check_positive, opening_kind
 from floorplans.errors import Place, PlanError, format_place
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import Own, by_name, check_materials
-from floorplans.plan import FloorPlan, UncheckedPlan
+from floorplans.plan import FloorPlan
 from floorplans.toml.materials import read_materials
 from floorplans.toml.table import Table, as_points
 from floorplans.toml.writer import FORMAT_VERSION, dumps
+from floorplans.unchecked import PlanFile, UncheckedPlan
 from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 
 PLAN_KEYS = (
@@ -33,33 +33,6 @@ WALL_KEYS = ("points", "material", "thickness_m", "height_m", "openings")
 OPENING_KEYS = ("kind", "offset_m", "width_m", "sill_m", "head_m", "material", "thickness_m")
 
 Corners = list[tuple[float, float]]
-
-
-@dataclass(frozen=True)
-class Unchecked:
-    """A plan as its file tells it.
-
-    Attributes
-    ----------
-    plan : UncheckedPlan
-    piece_counts : tuple of int
-        Straight walls of each of the file's polylines.
-    """
-
-    plan: UncheckedPlan
-    piece_counts: tuple[int, ...]
-
-    @classmethod
-    def of(cls, plan: UncheckedPlan) -> Unchecked:
-        """Number the walls of a plan that is in no file."""
-        return cls(plan, (1,) * len(plan.walls))
-
-    def place_in_file(self, place: Place) -> Place:
-        """Turn the index of a straight wall into that of the file's polyline it is a piece of."""
-        if len(place) < 2 or place[0] != "walls":
-            return place
-        tables = [table for table, count in enumerate(self.piece_counts) for _ in range(count)]
-        return ("walls", tables[int(place[1])], *place[2:])
 
 
 def builtin_names() -> tuple[str, ...]:
@@ -127,7 +100,7 @@ def loads(text: str, *, origin: str = "<text>") -> FloorPlan:
     return from_data(_parse(text, origin), origin=origin)
 
 
-def loads_unchecked(text: str, *, origin: str = "<text>") -> Unchecked:
+def loads_unchecked(text: str, *, origin: str = "<text>") -> PlanFile:
     """Read a plan from TOML text that may describe an impossible building.
 
     Raises
@@ -170,7 +143,7 @@ def _read_plan(table: Table) -> FloorPlan:
         raise PlanError(error.problem, place, error.value, at=error.at) from None
 
 
-def _read_unchecked(table: Table) -> Unchecked:
+def _read_unchecked(table: Table) -> PlanFile:
     _check_version(table)
     height_m = table.number("height_m")
     check_positive(height_m, ("height_m",))
@@ -198,7 +171,7 @@ def _read_unchecked(table: Table) -> Unchecked:
         materials=materials,
         material_edition=table.optional_text("material_edition"),
     )
-    return Unchecked(plan, tuple(len(walls) for walls in pieces))
+    return PlanFile(plan, tuple(len(walls) for walls in pieces))
 
 
 def _check_version(table: Table) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -17,10 +17,8 @@ import trimesh
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from floorplans.unchecked import UncheckedPlan
 from floorplans.walls import Panel, Wall, panels
-
-if TYPE_CHECKING:
-    from floorplans.plan import FloorPlan
 
 Triangles = NDArray[np.float64]
 """(n, 3, 3): triangle, corner, (x, y, z) [m]."""
@@ -53,12 +51,12 @@ class WallMesh:
     materials: tuple[SheetMaterial, ...]
 
 
-def build_mesh(plan: FloorPlan) -> WallMesh:
+def build_mesh(plan: UncheckedPlan) -> WallMesh:
     """Build the sheets of a plan's walls, floor and ceiling.
 
     Parameters
     ----------
-    plan : FloorPlan
+    plan : UncheckedPlan
 
     Returns
     -------
@@ -78,7 +76,7 @@ def build_mesh(plan: FloorPlan) -> WallMesh:
     return WallMesh(mesh, face_material, materials)
 
 
-def _sheets(plan: FloorPlan) -> Iterator[tuple[SheetMaterial, Triangles]]:
+def _sheets(plan: UncheckedPlan) -> Iterator[tuple[SheetMaterial, Triangles]]:
     for wall in plan.walls:
         for panel in panels(wall):
             yield SheetMaterial(panel.material, panel.thickness_m), _panel_triangles(wall, panel)
@@ -114,6 +112,6 @@ def slab_triangles(outline: Polygon, z: float) -> Triangles:
     return np.concatenate([plan_view, np.full((*plan_view.shape[:2], 1), z)], axis=2)
 
 
-def _colours(plan: FloorPlan, materials: tuple[SheetMaterial, ...]) -> NDArray[np.uint8]:
+def _colours(plan: UncheckedPlan, materials: tuple[SheetMaterial, ...]) -> NDArray[np.uint8]:
     colours = [bytes.fromhex(plan.colour_of(material.name)[1:]) for material in materials]
     return np.array([(*colour, 255) for colour in colours], dtype=np.uint8)

@@ -5,89 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from functools import cached_property
 from hashlib import sha256
-from itertools import pairwise
-
-import numpy as np
-from numpy.typing import NDArray
-from shapely.geometry import Polygon
 
 from floorplans.checks.plan import check_plan
-from floorplans.georeference import GeoOrigin
-from floorplans.materials import MATERIAL_COLOURS, OWN_COLOUR, Own, PlanMaterial, by_name
 from floorplans.mesh import WallMesh, build_mesh
 from floorplans.toml.writer import dumps
-from floorplans.walls import Opening, Wall, solid_intervals
-
-__all__ = ["FloorPlan", "Opening", "UncheckedPlan", "Wall"]
-
-
-@dataclass(frozen=True)
-class UncheckedPlan:
-    """What a plan's file tells, right or wrong; `FloorPlan` has the same attributes, checked."""
-
-    name: str
-    outline: Polygon
-    walls: tuple[Wall, ...]
-    height_m: float
-    floor_material: str
-    ceiling_material: str
-    source: tuple[float, float, float]
-    start: tuple[float, float]
-    floor_thickness_m: float = 0.2
-    ceiling_thickness_m: float = 0.2
-    origin: GeoOrigin | None = None
-    materials: tuple[PlanMaterial, ...] = ()
-    material_edition: str | None = None
-
-    @property
-    def bounds(self) -> tuple[float, float, float, float]:
-        """Smallest box around the outline, (x_min, y_min, x_max, y_max) [m]."""
-        return self.outline.bounds
-
-    @cached_property
-    def own_materials(self) -> Own:
-        """The plan's own materials by name."""
-        return by_name(self.materials)
-
-    def colour_of(self, material: str) -> str:
-        """Colour #rrggbb that a built-in material or one of the plan's own is drawn in."""
-        if material in self.own_materials:
-            return self.own_materials[material].colour or OWN_COLOUR
-        return MATERIAL_COLOURS[material]
-
-    def solid_segments(self, height_m: float) -> NDArray[np.float64]:
-        """Plan-view segments in which walls and filled openings are solid at a height.
-
-        Parameters
-        ----------
-        height_m : float
-            Above the floor [m]. At exactly the height of a sill, head or top, what touches that
-            height counts as solid.
-
-        Returns
-        -------
-        (n, 2, 2) float64
-            Segment, end, and (x, y) [m].
-
-        Raises
-        ------
-        ValueError
-            When the height is not between floor and ceiling.
-        """
-        if not 0 <= height_m <= self.height_m:
-            raise ValueError(f"height_m = {height_m:g}: expected 0 to {self.height_m:g} [m]")
-        segments = [
-            (wall.point_at(low), wall.point_at(high))
-            for wall in self.walls
-            for low, high in solid_intervals(wall, height_m)
-        ]
-        return np.array(segments, dtype=np.float64).reshape(-1, 2, 2)
-
-    def layer_heights(self) -> tuple[float, ...]:
-        """One height [m] in each horizontal layer within which the plan view stays the same."""
-        edges = {0.0, self.height_m} | {wall.height_m for wall in self.walls}
-        edges |= {z for wall in self.walls for o in wall.openings for z in (o.sill_m, o.head_m)}
-        return tuple((low + high) / 2 for low, high in pairwise(sorted(edges)))
+from floorplans.unchecked import UncheckedPlan
 
 
 @dataclass(frozen=True)

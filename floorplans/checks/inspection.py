@@ -19,8 +19,7 @@ from shapely.geometry import LineString, MultiLineString, Point, Polygon
 
 from floorplans.checks.plan import building_faults, number_faults
 from floorplans.errors import PlanError, format_place
-from floorplans.loading import Unchecked
-from floorplans.plan import UncheckedPlan
+from floorplans.unchecked import PlanFile, UncheckedPlan
 from floorplans.walls import TOLERANCE_M, Wall
 from floorplans.walls import Point as PlanPoint
 
@@ -75,12 +74,12 @@ class _Walls:
     names: tuple[str, ...]
 
 
-def inspect(file: Unchecked) -> tuple[Finding, ...]:
+def inspect(file: PlanFile) -> tuple[Finding, ...]:
     """Find everything wrong or doubtful about a plan.
 
     Parameters
     ----------
-    file : Unchecked
+    file : PlanFile
         The plan, and how its walls are numbered in its file.
 
     Returns
@@ -94,13 +93,13 @@ def inspect(file: Unchecked) -> tuple[Finding, ...]:
     return (*(_error(fault, file) for fault in building_faults(file.plan)), *_warnings(file))
 
 
-def _error(fault: PlanError, file: Unchecked) -> Finding:
+def _error(fault: PlanError, file: PlanFile) -> Finding:
     place = file.place_in_file(fault.place)
     text = str(PlanError(fault.problem, place, fault.value))
     return Finding("error", str(place[0]) if place else "plan", text, fault.at)
 
 
-def _warnings(file: Unchecked) -> Iterator[Finding]:
+def _warnings(file: PlanFile) -> Iterator[Finding]:
     plan = file.plan
     lines = np.array([LineString([w.start, w.end]) for w in plan.walls], dtype=np.object_)
     places = (file.place_in_file(("walls", index)) for index in range(len(lines)))

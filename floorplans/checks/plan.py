@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from math import isfinite
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -18,10 +17,8 @@ from floorplans.checks.walls import check_positive, check_wall
 from floorplans.errors import Place, PlanError
 from floorplans.georeference import check_origin
 from floorplans.materials import check_materials, check_slab
+from floorplans.unchecked import UncheckedPlan
 from floorplans.walls import TOLERANCE_M, Wall, closed_intervals
-
-if TYPE_CHECKING:
-    from floorplans.plan import UncheckedPlan
 
 
 def check_plan(plan: UncheckedPlan) -> None:

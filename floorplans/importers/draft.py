@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import hypot
+from math import hypot, radians, sin
 
 from shapely.geometry import Polygon
 
 from floorplans.georeference import GeoOrigin
 from floorplans.walls import OpeningKind, Point
+
+_MAX_SINE = sin(radians(20.0))
+"""Sine of the largest angle between an opening and its wall."""
 
 
 @dataclass(frozen=True)
@@ -136,6 +139,13 @@ class RawOpening:
             head_m=head_m,
             material=material,
         )
+
+    def is_along(self, direction: Point) -> bool:
+        """Whether it runs along a unit vector; one of unknown direction runs along any."""
+        if self.direction is None:
+            return True
+        (ux, uy), (vx, vy) = direction, self.direction
+        return abs(ux * vy - uy * vx) <= _MAX_SINE * hypot(vx, vy)
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,10 @@ import numpy as np
 import shapely
 
 from floorplans.checks.plan import building_faults
-from floorplans.plan import UncheckedPlan
 from floorplans.repair.moves import at_text
 from floorplans.repair.walls import REACH_M, Change, repair_walls
 from floorplans.toml.writer import dumps
+from floorplans.unchecked import UncheckedPlan
 from floorplans.walls import TOLERANCE_M, Point
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from shapely.geometry.polygon import LinearRing
 
@@ -11,10 +10,8 @@ from floorplans.georeference import GeoOrigin
 from floorplans.toml.materials import write_materials
 from floorplans.toml.values import toml_number as _number
 from floorplans.toml.values import toml_text as _text
+from floorplans.unchecked import UncheckedPlan
 from floorplans.walls import Opening, Wall
-
-if TYPE_CHECKING:
-    from floorplans.plan import UncheckedPlan
 
 FORMAT_VERSION = 1
 

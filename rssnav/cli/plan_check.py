@@ -14,9 +14,10 @@ from rich.text import Text
 from floorplans import FloorPlan, PlanError
 from floorplans.checks.inspection import Finding, inspect
 from floorplans.checks.plan import faults, number_faults
-from floorplans.loading import Unchecked, builtin_names, loads_unchecked, read_text
+from floorplans.loading import builtin_names, loads_unchecked, read_text
 from floorplans.repair.plan import Mended, mend
 from floorplans.repair.walls import Change
+from floorplans.unchecked import PlanFile
 from rssnav.cli.console import note, print_json, print_table
 from rssnav.cli.options import Json, Plan, check_suffix, examples
 from rssnav.cli.plan_facts import facts_of, print_facts
@@ -78,7 +79,7 @@ def check(
         changes = mended.changes
         _write(mended, text, Path(plan), output)
         if changes:
-            file, plan = Unchecked.of(mended.plan), str(output or plan)
+            file, plan = PlanFile.of(mended.plan), str(output or plan)
     _report(file, plan, changes, as_json)
 
 
@@ -99,7 +100,7 @@ def _write(mended: Mended, old_text: str, path: Path, output: Path | None) -> No
     note(f"wrote {target}{kept}")
 
 
-def _report(file: Unchecked, plan: str, changes: Sequence[Change], as_json: bool) -> None:
+def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool) -> None:
     findings = list(inspect(file))
     errors = [finding for finding in findings if finding.severity == "error"]
     flights: tuple[Reach, ...] = ()
@@ -127,7 +128,7 @@ def _report(file: Unchecked, plan: str, changes: Sequence[Change], as_json: bool
         _fail(file, plan)
 
 
-def _fail(file: Unchecked, origin: str) -> NoReturn:
+def _fail(file: PlanFile, origin: str) -> NoReturn:
     """Raise the first fault, as reading the plan for any other purpose does."""
     first = next(faults(file.plan))
     place = file.place_in_file(first.place)

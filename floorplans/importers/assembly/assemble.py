@@ -11,19 +11,24 @@ from shapely.geometry import Polygon
 
 from floorplans.checks.walls import check_positive
 from floorplans.errors import PlanError, unknown_name
-from floorplans.importers.assembly.openings import (
+from floorplans.importers.assembly.openings import bridge, hang
+from floorplans.importers.assembly.outline import Storey, enclose
+from floorplans.importers.assembly.source_and_start import SOURCE_HEIGHT_M, Places, place
+from floorplans.importers.defaults import (
     DOOR_HEAD_M,
     DOOR_MATERIAL,
     DOOR_THICKNESS_M,
+    HEIGHT_M,
+    SLAB_MATERIAL,
+    THICK_M,
+    THICK_WALL_MATERIAL,
+    WALL_MATERIAL,
+    WALL_THICKNESS_M,
     WINDOW_HEAD_M,
     WINDOW_MATERIAL,
     WINDOW_SILL_M,
     WINDOW_THICKNESS_M,
-    bridge,
-    hang,
 )
-from floorplans.importers.assembly.outline import Storey, enclose
-from floorplans.importers.assembly.source_and_start import SOURCE_HEIGHT_M, Places, place
 from floorplans.importers.draft import Draft, ImportOptions, Origin, RawOpening, RawWall
 from floorplans.importers.imported import Assumption, Imported
 from floorplans.materials import MATERIALS
@@ -33,12 +38,6 @@ from floorplans.repair.moves import DECIMALS, Change, tidy_point
 from floorplans.repair.walls import REACH_M, repair_walls
 from floorplans.walls import TOLERANCE_M, Wall
 
-HEIGHT_M = 3.0
-WALL_THICKNESS_M = 0.1
-WALL_MATERIAL = "plasterboard"
-THICK_WALL_MATERIAL, THICK_M = "concrete", 0.18
-"""Of walls known to be at least as thick [m], where the file names no material."""
-SLAB_MATERIAL = "concrete"
 THICKNESS_SHARE = 0.3
 """Walls in one line are joined where their thicknesses differ by at most this share."""
 MAX_WALLS = 20_000

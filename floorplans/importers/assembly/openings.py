@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import hypot, radians, sin
 
 import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from floorplans.importers.centrelines.double_doors import LEAF_GAP_M, same_kind
+from floorplans.importers.defaults import (
+    DOOR_HEAD_M,
+    DOOR_MATERIAL,
+    DOOR_THICKNESS_M,
+    WINDOW_HEAD_M,
+    WINDOW_MATERIAL,
+    WINDOW_SILL_M,
+    WINDOW_THICKNESS_M,
+)
 from floorplans.importers.draft import RawOpening
 from floorplans.repair.moves import (
     DECIMALS,
@@ -22,23 +31,14 @@ from floorplans.repair.moves import (
 from floorplans.walls import TOLERANCE_M, Opening, Wall
 from floorplans.walls import Point as Point2
 
-DOOR_HEAD_M = 2.1
-WINDOW_SILL_M = 0.9
-WINDOW_HEAD_M = 2.1
-DOOR_MATERIAL, DOOR_THICKNESS_M = "wood", 0.04
-WINDOW_MATERIAL, WINDOW_THICKNESS_M = "glass", 0.02
-
-_MAX_SINE = sin(radians(20.0))
 _BESIDE_M = 0.3
 """How far beside its wall's body the middle of an opening may be drawn [m]."""
 _FRAME_M = 0.4
 """How far a gap may go on beyond an opening at each side [m]."""
 _TOUCH_M = 0.05
-_JOIN_M = 0.15
-"""Openings of one kind nearer than this are one, such as the leaves of a double door [m]."""
 _ON_EDGE_M = 1e-5
-_MIN_SHARE = 0.5
-"""Share of an opening's width that must lie in its wall."""
+_MIN_FRACTION = 0.5
+"""Fraction of an opening's width that must lie in its wall."""
 
 
 @dataclass(frozen=True)
@@ -47,49 +47,6 @@ class Hung:
 
     walls: tuple[Wall, ...]
     changes: tuple[Change, ...]
-
-
-def join_leaves(openings: Sequence[RawOpening]) -> list[RawOpening]:
-    """Make one opening of those of one kind that lie next to each other, as double doors do.
-
-    Parameters
-    ----------
-    openings : sequence of RawOpening
-        Those of unknown direction stay as they are.
-    """
-    joined: list[RawOpening] = []
-    for opening in openings:
-        new = opening
-        for other in [*joined]:
-            both = _joined(new, other)
-            if both is not None:
-                joined.remove(other)
-                new = both
-        joined.append(new)
-    return joined
-
-
-def _joined(a: RawOpening, b: RawOpening) -> RawOpening | None:
-    """One opening in place of two that lie next to each other; None where they do not."""
-    if a.direction is None or b.direction is None or _kind(a) != _kind(b):
-        return None
-    along = Wall(a.centre, _onward(a.centre, a.direction), "", 1.0, 1.0)
-    s, across = along_across(along, b.centre)
-    reach_m = (a.width_m + b.width_m) / 2
-    if not _parallel(b, along) or abs(across) > _JOIN_M or abs(s) > reach_m + _JOIN_M:
-        return None
-    low = min(-a.width_m, 2 * s - b.width_m) / 2
-    high = max(a.width_m, 2 * s + b.width_m) / 2
-    return replace(a, centre=along.point_at((low + high) / 2), width_m=high - low)
-
-
-def _kind(opening: RawOpening) -> tuple[object, ...]:
-    return (opening.kind, opening.sill_m, opening.head_m, opening.material, opening.thickness_m)
-
-
-def _onward(point: Point2, direction: Point2) -> Point2:
-    length = hypot(*direction)
-    return (point[0] + direction[0] / length, point[1] + direction[1] / length)
 
 
 def bridge(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall, ...]:
@@ -124,9 +81,9 @@ def bridge(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall,
 
 def _filling(opening: RawOpening, near: Sequence[Wall]) -> Wall | None:
     """Wall in the gap that an opening fills; None where it stands in a wall or in no gap."""
-    if any(_parallel(opening, wall) and _holds(wall, opening) for wall in near):
+    if any(_is_in(opening, wall) for wall in near):
         return None
-    in_line = [wall for wall in near if _parallel(opening, wall) and _beside(wall, opening)]
+    in_line = [wall for wall in near if _is_in_line(opening, wall)]
     for wall in sorted(in_line, key=lambda wall: -wall.length_m):
         s, _ = along_across(wall, opening.centre)
         spans = [span for other in near if (span := _contact(wall, other)) is not None]
@@ -171,25 +128,19 @@ def _at(wall: Wall, s: float) -> Point2:
     return tidy_point(wall.start[0] + s * ux, wall.start[1] + s * uy)
 
 
-def _beside(wall: Wall, opening: RawOpening) -> bool:
-    """Whether the middle of an opening lies beside a wall's line."""
+def _is_in_line(opening: RawOpening, wall: Wall) -> bool:
+    """Whether an opening runs along a wall, with its middle beside the wall's line."""
     _, across = along_across(wall, opening.centre)
-    return abs(across) <= wall.thickness_m / 2 + _BESIDE_M
-
-
-def _parallel(opening: RawOpening, wall: Wall) -> bool:
-    if opening.direction is None:
-        return True
-    (ux, uy), (vx, vy) = direction(wall), opening.direction
-    return abs(ux * vy - uy * vx) <= _MAX_SINE * hypot(vx, vy)
-
-
-def _holds(wall: Wall, opening: RawOpening) -> bool:
-    """Whether the middle of an opening lies beside a wall, and half its width along it."""
-    s, across = along_across(wall, opening.centre)
-    overlap = min(s + opening.width_m / 2, wall.length_m) - max(s - opening.width_m / 2, 0.0)
     beside = abs(across) <= wall.thickness_m / 2 + _BESIDE_M
-    return beside and 0 <= s <= wall.length_m and overlap > _MIN_SHARE * opening.width_m
+    return beside and opening.is_along(direction(wall))
+
+
+def _is_in(opening: RawOpening, wall: Wall) -> bool:
+    """Whether an opening in line with a wall has its middle and half its width on it."""
+    s, _ = along_across(wall, opening.centre)
+    overlap = min(s + opening.width_m / 2, wall.length_m) - max(s - opening.width_m / 2, 0.0)
+    on_wall = 0 <= s <= wall.length_m and overlap > _MIN_FRACTION * opening.width_m
+    return on_wall and _is_in_line(opening, wall)
 
 
 def hang(walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon) -> Hung:
@@ -214,13 +165,13 @@ def hang(walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon
     edge = outline.boundary.buffer(_ON_EDGE_M)
     for raw in openings:
         near = tree.query(Point(raw.centre), "dwithin", distance=thickest_m / 2 + _BESIDE_M)
-        fitting = [i for i in near.tolist() if _parallel(raw, walls[i]) and _holds(walls[i], raw)]
-        if not fitting:
+        hosts = [i for i in near.tolist() if _is_in(raw, walls[i])]
+        if not hosts:
             changes.append(
                 Change("dropped", f"{raw.kind} that stands in no wall dropped", raw.centre)
             )
             continue
-        i = min(fitting, key=lambda i: (abs(along_across(walls[i], raw.centre)[1]), i))
+        i = min(hosts, key=lambda i: (abs(along_across(walls[i], raw.centre)[1]), i))
         _add(shares[i], _opening(raw, walls[i], edge))
     hung = [
         replace(wall, openings=tuple(sorted(share, key=lambda o: (o.offset_m, o.sill_m))))
@@ -264,7 +215,7 @@ def _add(share: list[Opening], new: Opening) -> None:
     """Add an opening to those of a wall: joined with one of its kind, cut where others are."""
     for i, old in enumerate(share):
         apart_m = max(old.offset_m, new.offset_m) - min(old.end_m, new.end_m)
-        if apart_m <= _JOIN_M and _look(old) == _look(new):
+        if apart_m <= LEAF_GAP_M and same_kind(old, new):
             low, high = min(old.offset_m, new.offset_m), max(old.end_m, new.end_m)
             share.pop(i)
             _add(share, replace(old, offset_m=low, width_m=high - low))
@@ -278,7 +229,3 @@ def _add(share: list[Opening], new: Opening) -> None:
         ):
             return
     share.append(new)
-
-
-def _look(opening: Opening) -> tuple[object, ...]:
-    return (opening.kind, opening.sill_m, opening.head_m, opening.material, opening.thickness_m)

@@ -21,13 +21,14 @@ from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
-from floorplans.importers.assembly.openings import WINDOW_MATERIAL, WINDOW_THICKNESS_M, join_leaves
 from floorplans.importers.centrelines.align import along_walls, squared
 from floorplans.importers.centrelines.areas import MAX_THICKNESS_M, walls_of_area
+from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
 from floorplans.importers.centrelines.materials import by_material, without_openings
 from floorplans.importers.centrelines.parallel_lines import strips_of_lines
 from floorplans.importers.centrelines.spurious import without_doubles
+from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
 from floorplans.importers.dxf.curves import Curve, Swing
 from floorplans.importers.dxf.drawing import Content, load_document, read_content

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
-from floorplans.importers.assembly.openings import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.centrelines.areas import walls_of_area
+from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import RawOpening, RawWall
 from floorplans.importers.ifc.curves import Entity
 from floorplans.importers.ifc.materials import dominant_material

@@ -11,8 +11,9 @@ from small_plans import ROOM, box, box_around_courtyard, edited, ring
 import floorplans
 from floorplans import Opening, Wall
 from floorplans.checks.inspection import inspect
-from floorplans.loading import Unchecked, loads_unchecked
+from floorplans.loading import loads_unchecked
 from floorplans.repair.plan import mend
+from floorplans.unchecked import PlanFile
 
 DOOR = Opening(1.0, 1.0, 0.0, 2.1, "door")
 
@@ -23,18 +24,18 @@ def wall(start, end, *openings: Opening, thickness_m: float = 0.1, height_m: flo
 
 def warnings_of(*walls: Wall, **changes):
     """Kinds and places of what is doubtful about the box with more walls in it."""
-    found = inspect(Unchecked.of(box(walls, **changes)))
+    found = inspect(PlanFile.of(box(walls, **changes)))
     assert {finding.severity for finding in found} <= {"warning"}
     return [(f.kind, tuple(round(c, 3) for c in f.at)) for f in found if f.kind != "no door"]
 
 
 @pytest.mark.parametrize("name", floorplans.builtin_names())
 def test_builtin_plans_are_beyond_doubt(name) -> None:
-    assert inspect(Unchecked.of(floorplans.load(name))) == ()
+    assert inspect(PlanFile.of(floorplans.load(name))) == ()
 
 
 def test_office_is_beyond_doubt() -> None:
-    assert inspect(Unchecked.of(floorplans.generate_office(4, 3, courtyard=True))) == ()
+    assert inspect(PlanFile.of(floorplans.generate_office(4, 3, courtyard=True))) == ()
 
 
 @pytest.mark.parametrize("gap", [1e-3, 0.04, 0.13])
@@ -78,18 +79,18 @@ def test_wall_that_ends_in_a_door_is_told() -> None:
 def test_room_without_a_door_is_told() -> None:
     def shut(*openings: Opening):
         partition = wall((4.0, 0.0), (4.0, 4.0), *openings)
-        return [f.text for f in inspect(Unchecked.of(box((partition,)))) if f.kind == "no door"]
+        return [f.text for f in inspect(PlanFile.of(box((partition,)))) if f.kind == "no door"]
 
     window = Opening(1.0, 1.0, 0.9, 2.1, "window", "glass")
     assert shut(DOOR) == []
     assert len(shut(window)) == 2
     assert shut()[0].startswith("no door or passage leads to the room of ")
     low = box((wall((4.0, 0.0), (4.0, 4.0), height_m=1.0),))
-    assert [f.kind for f in inspect(Unchecked.of(low))] == ["no door"]  # one room, without a door
+    assert [f.kind for f in inspect(PlanFile.of(low))] == ["no door"]  # one room, without a door
 
 
 def test_courtyard_is_no_room() -> None:
-    rooms = [f for f in inspect(Unchecked.of(box_around_courtyard())) if f.kind == "no door"]
+    rooms = [f for f in inspect(PlanFile.of(box_around_courtyard())) if f.kind == "no door"]
     assert len(rooms) == 1
     assert "room of 23 m²" in rooms[0].text
 
@@ -136,7 +137,7 @@ def test_outline_follows_its_walls() -> None:
     corners = [(0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0)]
     outline = Polygon([(0.0, 0.04), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0)])
     torn = replace(loads_unchecked(ROOM).plan, outline=outline, walls=ring(corners, "concrete"))
-    assert inspect(Unchecked.of(torn))[0].severity == "error"
+    assert inspect(PlanFile.of(torn))[0].severity == "error"
     mended = mend(torn)
     assert floorplans.FloorPlan.of(mended.plan).outline.equals(Polygon(corners))
     assert any("corner of the outline" in str(change) for change in mended.changes)

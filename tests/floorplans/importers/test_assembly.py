@@ -28,9 +28,9 @@ from floorplans.importers import (
     assemble,
     import_plan,
 )
-from floorplans.importers.assembly.openings import join_leaves
 from floorplans.importers.assembly.source_and_start import CELL_M, place
 from floorplans.importers.centrelines.align import along_walls, squared
+from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
 from floorplans.importers.centrelines.materials import by_material
 from floorplans.importers.centrelines.parallel_lines import strips_of_lines

@@ -1,0 +1,18 @@
+"""What a plan gets where its file says nothing."""
+
+HEIGHT_M = 3.0
+"""From floor to ceiling [m]."""
+SLAB_MATERIAL = "concrete"
+
+WALL_THICKNESS_M = 0.1
+WALL_MATERIAL = "plasterboard"
+THICK_WALL_MATERIAL, THICK_M = "concrete", 0.18
+"""Of walls known to be at least as thick [m], where the file names no material."""
+
+DOOR_HEAD_M = 2.1
+DOOR_MATERIAL, DOOR_THICKNESS_M = "wood", 0.04
+"""Of doors in the outline; those inside are open."""
+
+WINDOW_SILL_M = 0.9
+WINDOW_HEAD_M = 2.1
+WINDOW_MATERIAL, WINDOW_THICKNESS_M = "glass", 0.02

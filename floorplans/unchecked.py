@@ -1,0 +1,112 @@
+"""A plan before its checks, and where its parts stand in its file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from floorplans.errors import Place
+from floorplans.georeference import GeoOrigin
+from floorplans.materials import MATERIAL_COLOURS, OWN_COLOUR, Own, PlanMaterial, by_name
+from floorplans.walls import Wall, solid_intervals
+
+
+@dataclass(frozen=True)
+class UncheckedPlan:
+    """A plan as its file states it, right or wrong; `FloorPlan` has the same attributes."""
+
+    name: str
+    outline: Polygon
+    walls: tuple[Wall, ...]
+    height_m: float
+    floor_material: str
+    ceiling_material: str
+    source: tuple[float, float, float]
+    start: tuple[float, float]
+    floor_thickness_m: float = 0.2
+    ceiling_thickness_m: float = 0.2
+    origin: GeoOrigin | None = None
+    materials: tuple[PlanMaterial, ...] = ()
+    material_edition: str | None = None
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Smallest box around the outline, (x_min, y_min, x_max, y_max) [m]."""
+        return self.outline.bounds
+
+    @cached_property
+    def own_materials(self) -> Own:
+        """The plan's own materials by name."""
+        return by_name(self.materials)
+
+    def colour_of(self, material: str) -> str:
+        """Colour #rrggbb that a built-in material or one of the plan's own is drawn in."""
+        if material in self.own_materials:
+            return self.own_materials[material].colour or OWN_COLOUR
+        return MATERIAL_COLOURS[material]
+
+    def solid_segments(self, height_m: float) -> NDArray[np.float64]:
+        """Plan-view segments in which walls and filled openings are solid at a height.
+
+        Parameters
+        ----------
+        height_m : float
+            Above the floor [m]. At exactly the height of a sill, head or top, what touches that
+            height counts as solid.
+
+        Returns
+        -------
+        (n, 2, 2) float64
+            Segment, end, and (x, y) [m].
+
+        Raises
+        ------
+        ValueError
+            When the height is not between floor and ceiling.
+        """
+        if not 0 <= height_m <= self.height_m:
+            raise ValueError(f"height_m = {height_m:g}: expected 0 to {self.height_m:g} [m]")
+        segments = [
+            (wall.point_at(low), wall.point_at(high))
+            for wall in self.walls
+            for low, high in solid_intervals(wall, height_m)
+        ]
+        return np.array(segments, dtype=np.float64).reshape(-1, 2, 2)
+
+    def layer_heights(self) -> tuple[float, ...]:
+        """One height [m] in each horizontal layer within which the plan view stays the same."""
+        edges = {0.0, self.height_m} | {wall.height_m for wall in self.walls}
+        edges |= {z for wall in self.walls for o in wall.openings for z in (o.sill_m, o.head_m)}
+        return tuple((low + high) / 2 for low, high in pairwise(sorted(edges)))
+
+
+@dataclass(frozen=True)
+class PlanFile:
+    """An unchecked plan, and how its walls are numbered in its file.
+
+    Attributes
+    ----------
+    plan : UncheckedPlan
+    piece_counts : tuple of int
+        Straight walls of each of the file's polylines.
+    """
+
+    plan: UncheckedPlan
+    piece_counts: tuple[int, ...]
+
+    @classmethod
+    def of(cls, plan: UncheckedPlan) -> PlanFile:
+        """Number the walls of a plan that is in no file."""
+        return cls(plan, (1,) * len(plan.walls))
+
+    def place_in_file(self, place: Place) -> Place:
+        """Turn the index of a straight wall into that of the file's polyline it is a piece of."""
+        if len(place) < 2 or place[0] != "walls":
+            return place
+        tables = [table for table, count in enumerate(self.piece_counts) for _ in range(count)]
+        return ("walls", tables[int(place[1])], *place[2:])
