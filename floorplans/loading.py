@@ -11,6 +11,7 @@ from pathlib import Path
 
 from shapely.geometry import Polygon
 
+from atomicfiles import atomic_write
 from floorplans.checks.walls import check_openings, check_positive, opening_kind
 from floorplans.errors import Place, PlanError, format_place
 from floorplans.georeference import GeoOrigin
@@ -131,7 +132,8 @@ def from_data(data: Mapping[str, object], *, origin: str = "<data>") -> FloorPla
 
 def save(plan: FloorPlan, path: str | Path) -> None:
     """Write a plan to a TOML file."""
-    Path(path).write_text(dumps(plan), encoding="utf-8", newline="\n")
+    with atomic_write(path) as temporary:
+        temporary.write_text(dumps(plan), encoding="utf-8", newline="\n")
 
 
 def _read_plan(table: Table) -> FloorPlan:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from raytrace.threads import n_threads
 from rssnav.agents import QLearning, RssAgent
 from rssnav.kernels import particle_filter, searching
 from rssnav.kernels.common import Moves
@@ -24,7 +25,7 @@ from rssnav.kernels.searching import Flight, Receiver
 from rssnav.learners import moves_of
 from rssnav.planning import path_length_m
 from rssnav.states import Fluctuation
-from rssnav.training import generator_states, n_threads
+from rssnav.training import generator_states
 from rssnav.world import GridWorld
 
 _STREAM = 1 << 32  # realisation numbers of searches: apart from those of trainings

@@ -4,11 +4,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
-from numba.core import config
-
 import raytrace.kernels
 import rssnav.kernels
-from rssnav.kernels.compiling import cache_folder
+from raytrace.kernels.cache import cache_folder
 
 
 class KernelCache(NamedTuple):
@@ -17,31 +15,30 @@ class KernelCache(NamedTuple):
     Attributes
     ----------
     folder
-        Where new ones are kept.
+        Where new ones are kept; None where no folder can be written.
     n_compiled
         Functions that are compiled.
     n_bytes
         What they take [bytes].
     """
 
-    folder: Path
+    folder: Path | None
     n_compiled: int
     n_bytes: int
 
 
 def tracer_cache() -> KernelCache:
     """State of the tracer's kernels."""
-    return _cache_of(raytrace.kernels, Path(getattr(config, "CACHE_DIR", "")))
+    return _cache_of(raytrace.kernels)
 
 
 def learning_cache() -> KernelCache:
     """State of the kernels of the learning loops."""
-    return _cache_of(rssnav.kernels, cache_folder())
+    return _cache_of(rssnav.kernels)
 
 
-def _cache_of(package: ModuleType, folder: Path) -> KernelCache:
-    """Look for a package's kernels in its cache folder."""
-    modules = {source.stem for source in Path(package.__path__[0]).glob("*.py")}
-    files = [f for f in folder.rglob("*.nb[ci]") if f.name.split(".")[0] in modules]
-    indices = [file for file in files if file.suffix == ".nbi"]
-    return KernelCache(folder, len(indices), sum(file.stat().st_size for file in files))
+def _cache_of(package: ModuleType) -> KernelCache:
+    folder = cache_folder(Path(package.__path__[0]))
+    files = [] if folder is None else list(folder.glob("*.nb[ci]"))
+    n_compiled = sum(file.suffix == ".nbi" for file in files)
+    return KernelCache(folder, n_compiled, sum(file.stat().st_size for file in files))

@@ -15,8 +15,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from atomicfiles import atomic_write
+from raytrace.results.hdf5 import hdf5_bytes
 from rssnav.agents import Agent, LocationAgent, QLearning, RssAgent
-from rssnav.files import whole_file
 from rssnav.results import Schedule, TrainingResult
 from rssnav.states import ExactStates, Fluctuation, IntervalStates, StateRule, ToleranceStates
 from rssnav.world import GridWorld
@@ -60,16 +61,21 @@ class ResultFileError(ValueError):
 
 def save_result(result: TrainingResult, path: str | Path) -> None:
     """Write a result to an HDF5 file, replacing it only once it is complete."""
-    with whole_file(path) as beside, h5py.File(beside, "w") as file:
-        file.attrs["format"], file.attrs["version"] = FORMAT, VERSION
-        _write_parameters(file, result)
-        world = file.create_group("world")
-        _write_arrays(world, result.world, _WORLD_ARRAYS)
-        for name in _WORLD_SCALARS:
-            world.attrs[name] = getattr(result.world, name)
-        _write_arrays(file, result, _RESULT_ARRAYS)
-        if result.q is not None:
-            _write_arrays(file, result, _Q_ARRAY)
+    content = hdf5_bytes(lambda file: _write(result, file))
+    with atomic_write(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def _write(result: TrainingResult, file: h5py.File) -> None:
+    file.attrs["format"], file.attrs["version"] = FORMAT, VERSION
+    _write_parameters(file, result)
+    world = file.create_group("world")
+    _write_arrays(world, result.world, _WORLD_ARRAYS)
+    for name in _WORLD_SCALARS:
+        world.attrs[name] = getattr(result.world, name)
+    _write_arrays(file, result, _RESULT_ARRAYS)
+    if result.q is not None:
+        _write_arrays(file, result, _Q_ARRAY)
 
 
 def load_result(path: str | Path) -> TrainingResult:

@@ -7,7 +7,6 @@ result does not depend on the number of threads, and any realisation can be repe
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -17,6 +16,7 @@ from threading import Event
 import numpy as np
 from numpy.typing import NDArray
 
+from raytrace.threads import n_threads
 from rssnav.agents import Agent, QLearning
 from rssnav.kernels import common
 from rssnav.learners import LearningProblem
@@ -189,19 +189,6 @@ def _wanted_runs(runs: int, only_runs: Sequence[int] | None) -> list[int]:
     if not wanted or wanted[0] < 0 or wanted[-1] >= runs:
         raise ValueError(f"only_runs: {only_runs!r} must name some of the runs 0 to {runs - 1}")
     return wanted
-
-
-def n_threads(threads: int | None) -> int:
-    """Threads to use: those asked for, or one a core that this process may run on."""
-    if threads is None:
-        return (
-            len(os.sched_getaffinity(0))
-            if hasattr(os, "sched_getaffinity")
-            else os.cpu_count() or 1
-        )
-    if threads < 1:
-        raise ValueError(f"threads: {threads!r} must be at least 1")
-    return threads
 
 
 def generator_states(seed: int, run: int) -> NDArray[np.uint64]:

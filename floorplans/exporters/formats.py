@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
+from atomicfiles import atomic_write_all
 from floorplans.errors import PlanError, unknown_name
 from floorplans.plan import FloorPlan
 
@@ -130,20 +129,11 @@ def format_of(path: Path, name: str | None = None) -> Format:
 
 
 def _write_all(files: Mapping[Path, bytes]) -> tuple[Path, ...]:
-    """Write all files beside their places first, and move them there when all are whole."""
-    beside = {path: path.with_name(f".{path.name}.{os.getpid()}.part") for path in files}
+    """Write all files or none of them."""
     try:
-        for path, content in files.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            beside[path].write_bytes(content)
-        for path, part in beside.items():
-            os.replace(part, path)
+        atomic_write_all(files)
     except OSError as error:
         raise PlanError(
             f"the file cannot be written: {error.strerror}", origin=str(next(iter(files)))
         ) from error
-    finally:
-        for part in beside.values():
-            with suppress(OSError):  # the folder may be none
-                part.unlink(missing_ok=True)
     return tuple(files)

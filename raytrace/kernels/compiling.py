@@ -1,44 +1,20 @@
-"""How the kernels are compiled, and where the machine code is kept.
+"""How the kernels are compiled."""
 
-Numba's cache notices a change of the file that holds a function, but not of a function that
-it calls in another file. So the cache folder carries a hash of all kernel sources.
-"""
-
-import hashlib
-import os
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
-from numba.core import config
 
 from raytrace.kernels import vectors as vectors  # numba is to know them
+from raytrace.kernels.cache import keep_compiled
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 FAST = {"nsz", "arcp", "contract", "afn"}
 """Floating-point freedoms of the field kernels: none that assumes away infinities."""
 
-
-def _use_own_cache() -> None:
-    """Point numba at a cache folder of this version, unless the user has chosen one."""
-    if os.environ.get("NUMBA_CACHE_DIR"):
-        return
-    digest = hashlib.sha256(numba.__version__.encode())
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.read_bytes())
-    root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    folder = root / "rssnav" / "kernels" / digest.hexdigest()[:16]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        folder = Path(tempfile.gettempdir()) / f"rssnav-kernels-{digest.hexdigest()[:16]}"
-    config.CACHE_DIR = str(folder)  # pyright: ignore[reportAttributeAccessIssue]
-
-
-_use_own_cache()
+_SOURCES = Path(__file__).parent
 
 
 def jit(
@@ -60,13 +36,18 @@ def jit(
         Whether it is moreover one of the small functions of inner loops, and always inlined.
     """
     inner = inner or inline
-    return numba.njit(  # pyright: ignore[reportCallIssue]
-        cache=True,
-        nogil=True,
-        error_model="numpy",
-        fastmath=FAST if fast else False,
-        forceinline=inline,
-        no_cpython_wrapper=inner,
-        no_cfunc_wrapper=True,
-        _nrt=allocates and not inner,
-    )
+
+    def compiled(function: Function) -> Function:
+        dispatcher: Any = numba.njit(  # pyright: ignore[reportCallIssue]
+            nogil=True,
+            error_model="numpy",
+            fastmath=FAST if fast else False,
+            forceinline=inline,
+            no_cpython_wrapper=inner,
+            no_cfunc_wrapper=True,
+            _nrt=allocates and not inner,
+        )(function)
+        keep_compiled(dispatcher, _SOURCES)
+        return dispatcher
+
+    return compiled

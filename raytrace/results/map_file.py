@@ -5,21 +5,20 @@
 antenna given by a table stands in the group `transmit_antenna`.
 """
 
-import os
-from collections.abc import Generator
-from contextlib import contextmanager
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
+from atomicfiles import atomic_write
 from numpy.typing import NDArray
 
 from raytrace.radio.antenna_patterns import PatternTable
 from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
 from raytrace.errors import MapFileError
 from raytrace.grid import Grid, TraceConfig
+from raytrace.results.hdf5 import hdf5_bytes
 from raytrace.results.radio_map import LAYERS, RadioMap
 from raytrace.radio.transmitter import Transmitter
 
@@ -32,34 +31,25 @@ _ANTENNAS: dict[str, type[HalfWaveDipole | Isotropic | PatternTable]] = {
 }
 
 
-@contextmanager
-def whole_file(path: Path) -> Generator[Path]:
-    """Give a temporary file beside `path` that takes its place if all goes well."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        yield temporary
-        with temporary.open("rb+") as written:
-            os.fsync(written.fileno())
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
 def save_radio_map(radio_map: RadioMap, path: Path) -> None:
     """Write a map; a run that is killed leaves the old file or none."""
-    with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
-        for axis in ("y", "x"):
-            scale = file.create_dataset(axis, data=getattr(radio_map.grid, axis))
-            scale.attrs.update(units="m", long_name=f"{axis} of the cell centres")
-            scale.make_scale(axis)
-        for name, layer in radio_map.layers.items():
-            data = file.create_dataset(name, data=layer, compression="gzip")
-            data.attrs.update(units=LAYERS[name].units, long_name=LAYERS[name].long_name)
-            data.dims[0].attach_scale(file["y"])
-            data.dims[1].attach_scale(file["x"])
-        file.attrs.update(attributes_of(radio_map))
-        _save_pattern(radio_map.transmitter.antenna, file)
+    content = hdf5_bytes(lambda file: _write(radio_map, file))
+    with atomic_write(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def _write(radio_map: RadioMap, file: h5py.File) -> None:
+    for axis in ("y", "x"):
+        scale = file.create_dataset(axis, data=getattr(radio_map.grid, axis))
+        scale.attrs.update(units="m", long_name=f"{axis} of the cell centres")
+        scale.make_scale(axis)
+    for name, layer in radio_map.layers.items():
+        data = file.create_dataset(name, data=layer, compression="gzip")
+        data.attrs.update(units=LAYERS[name].units, long_name=LAYERS[name].long_name)
+        data.dims[0].attach_scale(file["y"])
+        data.dims[1].attach_scale(file["x"])
+    file.attrs.update(attributes_of(radio_map))
+    _save_pattern(radio_map.transmitter.antenna, file)
 
 
 def _save_pattern(antenna: Antenna, file: h5py.File) -> None:

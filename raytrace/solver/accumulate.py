@@ -1,7 +1,6 @@
 """Sums over all paths, on any number of threads with the same result."""
 
 import math
-import os
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from raytrace.kernels.tracing import STRONGEST, Sums, new_sums
 from raytrace.solver.path_classes import Family, all_families
 from raytrace.solver.setup import Tracing
+from raytrace.threads import n_threads
 
 Floats = NDArray[np.float64]
 
@@ -22,11 +22,6 @@ Progress = Callable[[int, int], None]
 
 AHEAD = 4
 """Families in work, or waiting for their turn to be added, a thread."""
-
-
-def default_threads() -> int:
-    """Threads to use where the caller does not say: one a processor that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def sum_paths(
@@ -43,7 +38,7 @@ def sum_paths(
     progress
         Called as families are done.
     """
-    threads = threads or default_threads()
+    threads = n_threads(threads)
     if tracing.config.max_paths is not None:
         bounded = _sum(with_least_power(tracing, math.inf), threads, None)
         least = _least_power(bounded.bins, tracing.config.max_paths)

@@ -17,9 +17,10 @@ from raytrace.grid import Grid, TraceConfig
 from raytrace.kernels.tracing import Sums, new_sums
 from raytrace.radio.transmitter import Transmitter
 from raytrace.scene import Scene
-from raytrace.solver.accumulate import AHEAD, add_sums, default_threads
+from raytrace.solver.accumulate import AHEAD, add_sums
 from raytrace.solver.path_classes import Family, all_families
 from raytrace.solver.setup import prepare
+from raytrace.threads import n_threads
 
 Floats = NDArray[np.float64]
 
@@ -116,7 +117,7 @@ def estimate_cost(
     SceneError
         Where the transmitter is not inside the building.
     """
-    config, threads = config or TraceConfig(), threads or default_threads()
+    config, threads = config or TraceConfig(), n_threads(threads)
     n_receivers = grid.x.size * grid.y.size
     every = max(1, n_receivers // RECEIVERS)
     # once for the compiler, which is not to be timed

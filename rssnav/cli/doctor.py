@@ -11,7 +11,7 @@ import typer
 import floorplans
 from raytrace import TraceConfig, Transmitter, trace_paths
 from raytrace.radio.materials import MATERIAL_EDITION
-from raytrace.solver.accumulate import default_threads
+from raytrace.threads import n_threads
 from raytrace.trace import TRACER_VERSION
 from rssnav import GridWorld, LocationAgent, train
 from rssnav.cli.console import note, print_json, print_pairs
@@ -101,10 +101,10 @@ def _facts(caches: dict[str, KernelCache], test_s: float, faults: list[str]) -> 
         "libraries": {name: version(name) for name in LIBRARIES},
         "tracer_version": TRACER_VERSION,
         "material_edition": MATERIAL_EDITION,
-        "threads": default_threads(),
+        "threads": n_threads(),
         "kernels": {
             name: {
-                "folder": str(cache.folder),
+                "folder": None if cache.folder is None else str(cache.folder),
                 "compiled": cache.n_compiled,
                 "bytes": cache.n_bytes,
             }
@@ -131,6 +131,8 @@ def _print(facts: dict[str, Any], caches: dict[str, KernelCache]) -> None:
 
 
 def _state(cache: KernelCache) -> str:
+    if cache.folder is None:
+        return "compiled at every start: no folder for them can be written"
     if not cache.n_compiled:
         return f"were not compiled yet; kept in {cache.folder}"
     return f"{cache.n_compiled} compiled, {cache.n_bytes / 1e6:.1f} MB in {cache.folder}"

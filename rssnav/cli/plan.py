@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 import typer
 
 import floorplans
+from atomicfiles import atomic_write
 from floorplans import FloorPlan
 from rssnav.cli import plan_check, plan_export, plan_import, plan_new
 from rssnav.cli.console import print_json, print_table
@@ -18,7 +19,6 @@ from rssnav.cli.plan_facts import (
     size_text,
 )
 from rssnav.cli.plan_sketch import sketch
-from rssnav.files import whole_file
 
 SOLID_SUFFIXES = (".html", ".glb")
 
@@ -117,7 +117,7 @@ def _draw(
     from floorplans.pictures.viewer_3d import plan_scene, save_scene
     from rssnav.pictures.style import chosen_style, drawing
 
-    with whole_file(output) as beside, chosen_style(style), drawing():
+    with atomic_write(output) as beside, chosen_style(style), drawing():
         if output.suffix.lower() in SOLID_SUFFIXES:
             save_scene(plan_scene(plan), beside, plan.name)
         elif view == "3d":

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from atomicfiles import atomic_write
 from floorplans import FloorPlan, PlanError
 from floorplans.checks.inspection import Finding, inspect
 from floorplans.checks.plan import faults, number_faults
@@ -21,7 +22,6 @@ from floorplans.unchecked import PlanFile
 from rssnav.cli.console import note, print_json, print_table
 from rssnav.cli.options import Json, Plan, check_suffix, examples
 from rssnav.cli.plan_facts import facts_of, print_facts
-from rssnav.files import whole_file
 from rssnav.maps import scene_of
 from rssnav.reachability import Reach, reaches, unreached
 
@@ -90,9 +90,9 @@ def _write(mended: Mended, old_text: str, path: Path, output: Path | None) -> No
         return
     target = output or path
     if target == path:
-        with whole_file(path.with_name(path.name + ".bak")) as beside:
+        with atomic_write(path.with_name(path.name + ".bak")) as beside:
             beside.write_text(old_text, encoding="utf-8", newline="\n")
-    with whole_file(target) as beside:
+    with atomic_write(target) as beside:
         beside.write_text(mended.toml(), encoding="utf-8", newline="\n")
     for change in mended.changes:
         note(f"mended {change}")

@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
+from atomicfiles import atomic_write
 from floorplans.importers import Imported, ImportOptions, import_plan
 from floorplans.repair.walls import Change
 from rssnav.cli.console import print_json, print_table
 from rssnav.cli.options import Json, check_suffix, examples
 from rssnav.cli.plan_facts import facts_of, print_facts
-from rssnav.files import whole_file
 
 LISTED_CHANGES = ("closed", "dropped", "raised")
 """Kinds of changes that are listed one by one; of the others the report tells how many."""
@@ -169,7 +169,7 @@ def import_file(
     if output.exists() and not force:
         raise FileExistsError(17, "the file is there already; --force replaces it", str(output))
     imported = import_plan(file, options)
-    with whole_file(output) as beside:
+    with atomic_write(output) as beside:
         beside.write_text(imported.toml(), encoding="utf-8", newline="\n")
     _report(imported, output, as_json)
 

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
+from atomicfiles import atomic_write
 from rssnav.cli.options import check_suffix, examples
-from rssnav.files import whole_file
 
 _SIZE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX×]\s*(\d+(?:\.\d+)?)\s*")
 
@@ -45,6 +45,6 @@ def new(
         raise typer.BadParameter(f"{error}.", param_hint="--size, --height") from error
     if output.exists() and not force:
         raise FileExistsError(17, "the file is there already; --force replaces it", str(output))
-    with whole_file(output) as beside:
+    with atomic_write(output) as beside:
         beside.write_text(text, encoding="utf-8", newline="\n")
     print(f"wrote {output}; see it with: rssnav plan show {output}")

@@ -6,7 +6,7 @@ import csv
 from dataclasses import dataclass
 from pathlib import Path
 
-from rssnav.files import whole_file
+from atomicfiles import atomic_write
 
 Cell = str | int | float | None
 """A value of a table; None where there is none."""
@@ -88,7 +88,7 @@ class Table:
     def save_csv(self, folder: Path) -> None:
         """Write ``key``.csv with full precision; a value that is not there is an empty field."""
         with (
-            whole_file(folder / f"{self.key}.csv") as beside,
+            atomic_write(folder / f"{self.key}.csv") as beside,
             beside.open("w", newline="", encoding="utf-8") as file,
         ):
             writer = csv.writer(file)

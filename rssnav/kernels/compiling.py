@@ -1,61 +1,18 @@
-"""How the loops are compiled, and where their machine code is kept.
-
-Numba's cache notices a change of the file that holds a function, but not of a function that it
-calls in another file. So the loops are kept in a folder whose name holds a hash of all of their
-sources: a change anywhere compiles them anew.
-"""
+"""How the loops are compiled."""
 
 from __future__ import annotations
 
-import hashlib
-import os
-import tempfile
-from collections.abc import Callable, Generator
-from contextlib import contextmanager
-from functools import cache
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numba
-from numba.core import config
+
+from raytrace.kernels.cache import keep_compiled
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-
-def sources_digest(folder: Path) -> str:
-    """Hash of the Python files of a folder and of numba's version."""
-    digest = hashlib.sha256(numba.__version__.encode())
-    for source in sorted(folder.glob("*.py")):
-        digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
-    return digest.hexdigest()[:16]
-
-
-@cache
-def cache_folder() -> Path:
-    """Folder for the machine code of these sources; the user may choose it for all of numba."""
-    chosen = os.environ.get("NUMBA_CACHE_DIR")
-    if chosen:
-        return Path(chosen)
-    name = f"learning-{sources_digest(Path(__file__).parent)}"
-    root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    folder = root / "rssnav" / "kernels" / name
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        folder = Path(tempfile.gettempdir()) / f"rssnav-{name}"
-    return folder
-
-
-@contextmanager
-def _own_cache() -> Generator[None, None, None]:
-    """Point numba at that folder, and nobody else's functions: it looks while decorating."""
-    settings: Any = config  # filled in when numba is imported
-    before = settings.CACHE_DIR
-    settings.CACHE_DIR = str(cache_folder())
-    try:
-        yield
-    finally:
-        settings.CACHE_DIR = before
+_SOURCES = Path(__file__).parent
 
 
 def jit(
@@ -73,13 +30,12 @@ def jit(
     """
 
     def compiled(function: Function) -> Function:
-        compile_it: Any = numba.njit(  # pyright: ignore[reportCallIssue]
-            cache=True,
+        dispatcher: Any = numba.njit(  # pyright: ignore[reportCallIssue]
             nogil=True,
             inline=inline,
             _nrt=allocates,  # pyright: ignore[reportArgumentType]
-        )
-        with _own_cache():
-            return compile_it(function)
+        )(function)
+        keep_compiled(dispatcher, _SOURCES)
+        return dispatcher
 
     return compiled

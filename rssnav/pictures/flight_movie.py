@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.spatial import KDTree
 
+from atomicfiles import atomic_write
 from floorplans import FloorPlan
 from raytrace import RadioMap
-from rssnav.files import whole_file
 from rssnav.pictures.radio_map import draw_radio_map
 from rssnav.pictures.style import (
     AGENT_COLOURS,
@@ -256,7 +256,7 @@ def save_flight_movie(
         scene = FlightScene(plan, radio_map, flights)
         steps = [*range(scene.n_steps + 1), *[scene.n_steps] * round(HOLD_S * frames_per_s)]
         frames = _counted(map(scene.frame, steps), len(steps), progress)
-        with whole_file(path) as beside:
+        with atomic_write(path) as beside:
             _WRITERS[beside.suffix.lower()](beside, frames, frames_per_s)
     return flights
 

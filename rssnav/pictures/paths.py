@@ -13,11 +13,11 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
+from atomicfiles import atomic_write
 from floorplans import FloorPlan
 from floorplans.pictures.viewer_3d import ColourBar, add_lines, add_points, plan_scene, save_scene
 from raytrace import Paths
 from raytrace.kernels.path_points import DIFFRACTION, REFLECTION
-from rssnav.files import whole_file
 from rssnav.pictures.radio_map import draw_walls, plan_height_in, plan_width_in, set_limits
 from rssnav.pictures.style import INK, draw_source, save_picture, styled
 
@@ -151,5 +151,5 @@ def _save_scene(
         [*colours(np.linspace(0.0, 1.0, 9))],
         f"{scale.vmin:.1f}", f"{scale.vmax:.1f}", POWER_LABEL,
     )  # fmt: skip
-    with whole_file(path) as beside:
+    with atomic_write(path) as beside:
         save_scene(scene, beside, title, bar)

@@ -30,7 +30,7 @@ from matplotlib.style import available, context
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from rssnav.files import whole_file
+from atomicfiles import atomic_write
 
 if TYPE_CHECKING:
     from floorplans import FloorPlan
@@ -176,7 +176,7 @@ def png_bytes(figure: Figure, dpi: float = DPI) -> bytes:
 
 def save_picture(figure: Figure, path: str | Path) -> None:
     """Write a figure to a file (.png, .svg or .pdf), whole or not at all."""
-    with whole_file(path) as beside, drawing():
+    with atomic_write(path) as beside, drawing():
         figure.savefig(beside, dpi=DPI, metadata=_NO_DATE[beside.suffix.lower()])
 
 

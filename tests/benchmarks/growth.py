@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 import matplotlib.pyplot as plt
 from performance_page import PAGE, machine, table, write_part
 
+from atomicfiles import atomic_write
 from floorplans import generate_office
 from raytrace import (
     CostEstimate,
@@ -31,7 +32,6 @@ from raytrace import (
     compute_radio_map,
     estimate_cost,
 )
-from rssnav.files import whole_file
 
 HEIGHT_M = 1.5
 KEPT = Path("results/growth.json")
@@ -125,7 +125,7 @@ def run(sizes: Sequence[Size], limit_s: float, finished: Finished) -> None:
         print(f"{k} of {len(sizes)}: {size.name}", file=sys.stderr)
         finished[size.name] = in_own_process(size, limit_s)
         KEPT.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(KEPT) as place:
+        with atomic_write(KEPT) as place:
             place.write_text(json.dumps(finished, indent=1))
 
 

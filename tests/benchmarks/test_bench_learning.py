@@ -15,11 +15,12 @@ import numpy as np
 import pytest
 from c_loop import COMPILER, CRun, build
 
+from raytrace.threads import n_threads
 from rssnav import LocationAgent, QLearning, RssAgent, train
 from rssnav.agents import Agent
 from rssnav.kernels import common
 from rssnav.learners import LearningProblem, TabularLearner
-from rssnav.training import generator_states, n_threads
+from rssnav.training import generator_states
 from rssnav.world import ACTIONS, GridWorld
 
 EPISODES = 1500

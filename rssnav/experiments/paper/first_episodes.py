@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from raytrace.threads import n_threads
 from rssnav.results import TrainingResult
 from rssnav.training import train
 
@@ -82,7 +83,7 @@ def first_episodes(
         )
 
     alone: list[TrainingResult] = []
-    with ThreadPoolExecutor(threads) as pool:
+    with ThreadPoolExecutor(n_threads(threads)) as pool:
         for each in pool.map(repeat, result.run_ids.tolist()):
             alone.append(each)
             if progress is not None:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from rssnav.files import whole_file
+from atomicfiles import atomic_write
 
 if TYPE_CHECKING:
     from rssnav.experiments.paper.claims import Finding
@@ -111,7 +111,7 @@ def render(report: Report) -> str:
 
 def save_report(report: Report, path: Path) -> None:
     """Write the report, whole or not at all."""
-    with whole_file(path) as beside:
+    with atomic_write(path) as beside:
         beside.write_text(render(report), encoding="utf-8")
 
 
@@ -139,7 +139,7 @@ def summary(report: Report) -> dict[str, Any]:
 
 def save_summary(report: Report, path: Path) -> None:
     """Write :func:`summary` as JSON, whole or not at all."""
-    with whole_file(path) as beside:
+    with atomic_write(path) as beside:
         text = json.dumps(summary(report), indent=2, ensure_ascii=False, allow_nan=False)
         beside.write_text(text + "\n", encoding="utf-8")
 

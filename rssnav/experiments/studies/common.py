@@ -9,10 +9,10 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 import floorplans
+from atomicfiles import atomic_write
 from rssnav.experiments.paper import trainings
 from rssnav.experiments.paper.data import SPEEDS, Scenario
 from rssnav.experiments.tables import Table
-from rssnav.files import whole_file
 from rssnav.maps import make_map
 from rssnav.pictures.style import save_figure
 from rssnav.world import GridWorld
@@ -72,7 +72,7 @@ def write_study(out: Path, tables: tuple[Table, ...], figures: dict[str, Figure]
     for table in tables:
         table.save_csv(out / "tables")
         markdown = out / "tables" / f"{table.key}.md"
-        with whole_file(markdown) as beside:
+        with atomic_write(markdown) as beside:
             beside.write_text(as_markdown(table), encoding="utf-8")
         files += [out / "tables" / f"{table.key}.csv", markdown]
     for key, figure in figures.items():
