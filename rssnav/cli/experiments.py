@@ -107,13 +107,14 @@ def run_experiments(
 def _run_study(
     what: What, out: Path, quick: bool, seed: int, style: str | None, threads: int | None
 ) -> None:
-    from rssnav.experiments.studies import comparison, noise, sensitivity
+    from rssnav.experiments.studies import STUDIES, run_study
     from rssnav.pictures.style import chosen_style
 
-    study = {What.SENSITIVITY: sensitivity, What.NOISE: noise, What.COMPARISON: comparison}[what]
     with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
-        done = study.run(out, quick=quick, seed=seed, threads=threads, progress=show)
-    for file in done.files:
+        result = run_study(
+            STUDIES[what], out, quick=quick, seed=seed, threads=threads, progress=show
+        )
+    for file in result.files:
         print(file)
 
 

@@ -8,17 +8,16 @@ import numpy as np
 
 import floorplans
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
-from rssnav.experiments.paper import trainings
 from rssnav.experiments.paper.data import (
     AGENTS,
+    CONFIGURATIONS,
     SHOWN_EPISODES,
-    SPEEDS,
     VISIT_EPISODES,
-    Configuration,
+    VISITS_CONFIGURATIONS,
     PaperData,
-    Scenario,
 )
 from rssnav.experiments.paper.first_episodes import first_episodes
+from rssnav.experiments.paper.scenarios import Scenario, make_worlds
 from rssnav.training import train
 
 RUNS = 3
@@ -71,7 +70,7 @@ def log_distance_map(plan):
 def small_data():
     plans = {number: floorplans.loads(plan_text(number)) for number in (1, 2)}
     scenarios = {number: Scenario(plan, log_distance_map(plan)) for number, plan in plans.items()}
-    worlds = trainings.worlds(scenarios, SPEEDS)
+    worlds = make_worlds(scenarios)
     results = {
         key: train(
             worlds[key.scenario, key.speed],
@@ -81,8 +80,10 @@ def small_data():
             until_converged=True,
             snapshot_episodes=VISIT_EPISODES,
         )
-        for key in trainings.configurations(scenarios, SPEEDS)
+        for key in CONFIGURATIONS
     }
-    shown = [Configuration(1, agent, 1) for agent in AGENTS]
-    first = {key: first_episodes(results[key], VISIT_EPISODES[0], SHOWN_EPISODES) for key in shown}
+    first = {
+        key: first_episodes(results[key], VISIT_EPISODES[0], SHOWN_EPISODES)
+        for key in VISITS_CONFIGURATIONS
+    }
     return PaperData(scenarios, results, first)

@@ -1,34 +1,28 @@
-"""What the figures, tables and claims are made from: plans, maps and training results."""
+"""Input of the figures, tables and claims: plans, maps and training results."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.agents import Agent, LocationAgent, RssAgent
 from rssnav.experiments.paper.first_episodes import FirstEpisodes
+from rssnav.experiments.paper.scenarios import PLANS, SPEEDS, Scenario
 from rssnav.planning import Path, shortest_path
 from rssnav.results import TrainingResult
 from rssnav.world import GridWorld
 
-if TYPE_CHECKING:
-    from floorplans import FloorPlan
-    from raytrace import RadioMap
-
 AgentName = Literal["rss", "location"]
 
 AGENTS: dict[AgentName, Agent] = {"rss": RssAgent(), "location": LocationAgent()}
-"""The paper's two agents, in the order in which it shows them."""
+"""The paper's two agents, in its order."""
 
 AGENT_LABELS: dict[AgentName, str] = {"rss": "RSS-based", "location": "location-based"}
-
-SPEEDS = (1, 2, 4)
-"""Speeds the paper flies at [cells per step; m/s on its 1 m grid]."""
 
 SHOWN_EPISODES = 1000
 """Episodes that the paper's learning figures show."""
@@ -57,26 +51,30 @@ class Configuration:
 
     @property
     def name(self) -> str:
-        """Name for files."""
+        """Name of its files."""
         return f"scenario{self.scenario}_{self.agent}_{self.speed}mps"
 
     @property
     def label(self) -> str:
-        """Name for people."""
+        """Name in texts."""
         return f"Scenario {self.scenario}, {AGENT_LABELS[self.agent]}, {self.speed} m/s"
 
 
-@dataclass(frozen=True, eq=False)
-class Scenario:
-    """A floor plan and its radio map."""
+CONFIGURATIONS = tuple(
+    Configuration(scenario, agent, speed)
+    for scenario in range(1, 1 + len(PLANS))
+    for agent in AGENTS
+    for speed in SPEEDS
+)
+"""All trainings of the paper: scenarios, in each both agents, each at all speeds."""
 
-    plan: FloorPlan
-    radio_map: RadioMap
+VISITS_CONFIGURATIONS = tuple(Configuration(1, agent, 1) for agent in AGENTS)
+"""The trainings whose visits in the first episodes the paper shows."""
 
 
 @dataclass(frozen=True, eq=False)
 class PaperData:
-    """All that a run of the paper measured.
+    """Everything that a run of the paper measured.
 
     Attributes
     ----------

@@ -9,10 +9,7 @@ from __future__ import annotations
 from rssnav.experiments.paper.data import AgentName, Configuration
 
 RUNS = 100
-"""Realisations that its means run over."""
-
-EPISODE_LIMIT = 20_000
-"""Episodes a run may take to converge; not stated in the paper."""
+"""Realisations that its means are taken over."""
 
 _AGENT_ORDER: tuple[AgentName, ...] = ("rss", "location")
 _LENGTHS_M = {  # speed: Scenario 1 RSS, location; Scenario 2 RSS, location

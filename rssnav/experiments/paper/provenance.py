@@ -1,7 +1,8 @@
-"""How a run of the paper was made: seeds, versions, hashes, and the time each stage took."""
+"""How a run of the paper was made: parameters, seed, versions, hashes, and run times."""
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import platform
 import time
@@ -13,6 +14,8 @@ from importlib.metadata import version
 from typing import Any
 
 from rssnav.experiments.paper.data import PaperData
+from rssnav.experiments.tables import Column, Table
+from rssnav.result_file import agent_parameters
 
 _PACKAGES = (
     "rssnav",
@@ -29,7 +32,7 @@ _PACKAGES = (
 
 @dataclass
 class Record:
-    """What is known about a run apart from its results.
+    """Seed, versions and run times of a run of the paper.
 
     Attributes
     ----------
@@ -42,7 +45,7 @@ class Record:
     stages : dict of str to float
         Wall time of each stage [s].
     trained : dict of str to float
-        Wall time of each training [s]; one taken over from an earlier run is not in it.
+        Wall time of each training [s]; those reused from an earlier run are not listed.
     started : str
         Date and time (UTC).
     """
@@ -69,12 +72,12 @@ class Record:
 
     @property
     def machine(self) -> str:
-        """Machine, as far as run times depend on it."""
+        """Operating system, architecture and number of processors."""
         return f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors"
 
 
 def scenario_facts(data: PaperData) -> dict[str, dict[str, Any]]:
-    """Plan, hash and map of each scenario."""
+    """Return plan, hash and map of each scenario."""
     return {
         f"Scenario {number}": {
             "plan": scenario.plan.name,
@@ -88,3 +91,32 @@ def scenario_facts(data: PaperData) -> dict[str, dict[str, Any]]:
         }
         for number, scenario in data.scenarios.items()
     }
+
+
+def parameters(data: PaperData) -> Table:
+    """Make a row per parameter of maps, learning and schedule."""
+    result = next(iter(data.results.values()))
+    radio_map = next(iter(data.scenarios.values())).radio_map
+    groups: dict[str, dict[str, object]] = {
+        "trace": dataclasses.asdict(radio_map.config),
+        "transmitter": {
+            "power_dbm": radio_map.transmitter.power_dbm,
+            "frequency_hz": radio_map.transmitter.frequency_hz,
+        },
+        "grid": {
+            "cell_size_m": radio_map.grid.cell_size_m,
+            "height_m": radio_map.grid.height_m,
+        },
+        "learning": dataclasses.asdict(result.learning),
+        "schedule": dataclasses.asdict(result.schedule),
+    }
+    for each in data.results.values():
+        groups[f"{each.agent.name} agent"] = agent_parameters(each.agent)
+    rows = [(group, name, str(v)) for group, values in groups.items() for name, v in values.items()]
+    return Table(
+        "parameters",
+        "Parameters",
+        "Every parameter of maps and trainings, in the unit that its name ends in.",
+        (Column("group", "Part"), Column("name", "Parameter"), Column("value", "Value")),
+        tuple(rows),
+    )

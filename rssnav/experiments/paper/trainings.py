@@ -1,8 +1,8 @@
-"""Train the paper's configurations, going on from the files of an earlier run."""
+"""Train the paper's configurations, continuing from the files of an earlier run."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,33 +12,33 @@ from rssnav.experiments.paper.data import (
     SHOWN_EPISODES,
     VISIT_EPISODES,
     Configuration,
-    Scenario,
 )
-from rssnav.experiments.paper.printed_values import EPISODE_LIMIT
+from rssnav.experiments.progress import Notice
 from rssnav.result_file import ResultFileError
 from rssnav.results import Schedule, TrainingResult
 from rssnav.training import TrainingInterrupted, train
 from rssnav.world import GridWorld
 
-Notice = Callable[[str], None]
+EPISODE_LIMIT = 20_000
+"""Episodes a run may take to converge; the paper does not state a limit."""
 
 
 @dataclass(frozen=True)
 class TrainingPlan:
-    """How the configurations are trained.
+    """How the configurations are trained, and where the results are stored.
 
     Attributes
     ----------
     folder : Path
-        Where the results are kept, a file per configuration.
+        Folder of the results, a file per configuration.
     runs, seed : int
         Realisations of each, and the seed of all.
     threads : int or None
         Threads; all cores for None.
     resume : bool
-        Whether results of the same training are taken over from ``folder``.
+        Whether finished runs of the same training in ``folder`` are reused.
     notice : callable
-        Called with a sentence for people.
+        Called with what is reused or trained again, and why.
     """
 
     folder: Path
@@ -59,7 +59,7 @@ class TrainingPlan:
         world: GridWorld,
         progress: Callable[[int, int], None] | None = None,
     ) -> tuple[TrainingResult, bool]:
-        """Return a configuration's training, and whether anything had to be trained.
+        """Return a configuration's training, and whether any run had to be trained.
 
         Raises
         ------
@@ -71,7 +71,7 @@ class TrainingPlan:
         if earlier is not None and earlier.complete:
             return earlier, False
         if earlier is not None:
-            self.notice(f"{key.label}: going on from {earlier.run_ids.size} of {self.runs} runs")
+            self.notice(f"{key.label}: continuing from {earlier.run_ids.size} of {self.runs} runs")
         result = self._train(path, AGENTS[key.agent], world, earlier, progress)
         result.save(path)
         return result, True
@@ -105,7 +105,7 @@ class TrainingPlan:
             raise
 
     def _earlier(self, path: Path, key: Configuration, world: GridWorld) -> TrainingResult | None:
-        """Return the realisations of the same training that are already there."""
+        """Return the finished realisations of the same training, if the folder has any."""
         if not self.resume or not path.exists():
             return None
         try:
@@ -120,29 +120,6 @@ class TrainingPlan:
         return result
 
 
-def worlds(
-    scenarios: Mapping[int, Scenario], speeds: tuple[int, ...]
-) -> dict[tuple[int, int], GridWorld]:
-    """Make the world of each (scenario, speed). Raises :class:`~rssnav.world.WorldError`."""
-    return {
-        (number, speed): GridWorld.from_map(scenario.plan, scenario.radio_map, speed)
-        for number, scenario in scenarios.items()
-        for speed in speeds
-    }
-
-
 def compile_loop(world: GridWorld) -> None:
-    """Make sure the learning loop is compiled, so that CPU times measure learning alone."""
+    """Compile the learning loop, so that CPU times measure learning alone."""
     train(world, AGENTS["location"], runs=1, episodes=1, learning=QLearning(max_steps=1))
-
-
-def configurations(
-    scenarios: Mapping[int, Scenario], speeds: tuple[int, ...]
-) -> list[Configuration]:
-    """List the configurations: scenarios, in each both agents, each at all speeds."""
-    return [
-        Configuration(number, agent, speed)
-        for number in scenarios
-        for agent in AGENTS
-        for speed in speeds
-    ]

@@ -1,1 +1,17 @@
-"""Studies beyond the paper: its open choices, noise, other methods."""
+"""Studies beyond the paper: its open choices, RSS that fluctuates, other methods.
+
+Each study is a package or module that describes itself as a ``STUDY``;
+:func:`~rssnav.experiments.studies.study.run_study` runs any of them.
+"""
+
+from typing import Any
+
+from rssnav.experiments.studies import comparison, noise, sensitivity
+from rssnav.experiments.studies.study import Study, StudyResult, run_study
+
+STUDIES: dict[str, Study[Any, Any]] = {
+    study.name: study for study in (sensitivity.STUDY, noise.STUDY, comparison.STUDY)
+}
+"""All studies, by name."""
+
+__all__ = ["STUDIES", "Study", "StudyResult", "run_study"]

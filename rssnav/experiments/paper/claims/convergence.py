@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from rssnav.experiments.paper.claims.comparing import agents_alike, falls_with_speed
 from rssnav.experiments.paper.claims.verdicts import Case, Claim, Verdict, between
+from rssnav.experiments.paper.convergence_measures import MEASURES, Measure, converged
 from rssnav.experiments.paper.data import PaperData
-from rssnav.experiments.paper.figures.convergence_time import MEASURES, Measure, converged
 from rssnav.experiments.statistics import mean
 
 ENOUGH = 0.99

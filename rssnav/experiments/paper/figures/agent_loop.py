@@ -8,6 +8,7 @@ from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 from matplotlib.path import Path
 
 from rssnav.experiments.paper.data import PaperData
+from rssnav.experiments.paper.figures.paper_figure import PaperFigure
 from rssnav.pictures.style import AGENT_COLOURS, COLUMN_IN, INK, shade, styled
 
 _HEIGHT_IN = 1.85
@@ -94,3 +95,6 @@ def caption(_data: PaperData) -> str:
         "last position is the reward, and more than −21 dBm means that the source is found. The "
         "location-based agent has (x, y) as its state and 1/D as its reward instead."
     )
+
+
+FIGURE = PaperFigure("agent_loop", "Agent and environment", "the paper's Fig. 2", draw, caption)

@@ -7,6 +7,7 @@ from mpl_toolkits.mplot3d import Axes3D
 
 from floorplans.pictures.plan_view import draw_plan_3d
 from rssnav.experiments.paper.data import PaperData
+from rssnav.experiments.paper.figures.paper_figure import PaperFigure
 from rssnav.pictures.style import PAGE_IN, styled
 
 _HEIGHT_IN = 2.6
@@ -55,3 +56,6 @@ def caption(data: PaperData) -> str:
         "The paper gives their sizes, the source and the start, but not their walls: these plans "
         "are reconstructions under the constraints it states."
     )
+
+
+FIGURE = PaperFigure("floor_plans", "Floor plans", "the paper's Fig. 3", draw, caption)

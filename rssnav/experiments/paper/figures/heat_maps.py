@@ -11,7 +11,9 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
-from rssnav.experiments.paper.data import PaperData, Scenario
+from rssnav.experiments.paper.data import PaperData
+from rssnav.experiments.paper.figures.paper_figure import PaperFigure
+from rssnav.experiments.paper.scenarios import Scenario
 from rssnav.pictures.style import (
     MAP_COLOURS,
     PAGE_IN,
@@ -113,3 +115,8 @@ def caption(data: PaperData) -> str:
 
 def _dbm(value: float) -> str:
     return f"{value:.1f}".replace("-", "−")
+
+
+FIGURE = PaperFigure(
+    "heat_maps", "Received signal strength", "the background of the paper's Fig. 4", draw, caption
+)

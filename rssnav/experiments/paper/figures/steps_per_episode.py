@@ -14,6 +14,7 @@ from rssnav.experiments.paper.data import (
     AgentName,
     PaperData,
 )
+from rssnav.experiments.paper.figures.paper_figure import PaperFigure
 from rssnav.pictures.style import AGENT_COLOURS, PAGE_IN, label_panel, new_figure, shade, styled
 
 SCENARIO = 1
@@ -63,3 +64,6 @@ def caption(data: PaperData) -> str:
         f"smoothed, and the band from the {low} % to the {high} % quantile. The paper shows the "
         "means alone."
     )
+
+
+FIGURE = PaperFigure("steps_per_episode", "Steps per episode", "the paper's Fig. 6", draw, caption)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from rssnav.experiments.paper.data import AGENT_LABELS, AgentName, PaperData
 from rssnav.experiments.paper.figures.heat_maps import colour_scale, draw_map
+from rssnav.experiments.paper.figures.paper_figure import PaperFigure
 from rssnav.pictures.style import (
     INK,
     PAGE_IN,
@@ -93,3 +94,8 @@ def caption(data: PaperData) -> str:
         f"Final greedy flight at {SPEED} m/s of the realisation with the median length: {lengths}. "
         "An episode ends inside the dotted circle, closer than 2 m to the source."
     )
+
+
+FIGURE = PaperFigure(
+    "trajectories", "Final trajectories at 1 m/s", "the paper's Fig. 4", draw, caption
+)

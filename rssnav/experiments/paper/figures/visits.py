@@ -8,6 +8,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from rssnav.experiments.paper.data import AGENT_LABELS, AgentName, PaperData
+from rssnav.experiments.paper.figures.paper_figure import PaperFigure
 from rssnav.pictures.style import (
     PAGE_IN,
     draw_cells,
@@ -74,3 +75,6 @@ def caption(data: PaperData) -> str:
 def result_episodes(data: PaperData) -> tuple[int, ...]:
     """Episodes after which visits were kept."""
     return data.result(SCENARIO, _ORDER[0], SPEED).schedule.snapshot_episodes
+
+
+FIGURE = PaperFigure("visits", "Visits of each cell", "the paper's Fig. 5", draw, caption)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from rssnav.experiments.paper.data import AGENT_LABELS, Configuration, PaperData
-from rssnav.experiments.paper.figures.convergence_time import MEASURES, converged
+from rssnav.experiments.paper.convergence_measures import MEASURES, converged
+from rssnav.experiments.paper.data import Configuration, PaperData
+from rssnav.experiments.paper.tables.configuration import (
+    CONFIGURATION_COLUMNS,
+    configuration_cells,
+)
 from rssnav.experiments.statistics import mean
 from rssnav.experiments.tables import Cell, Column, Table
 from rssnav.results import TrainingResult
@@ -18,9 +22,7 @@ def _columns() -> tuple[Column, ...]:
         for part, heading in (("", "Mean "), ("low_", "2.5 % "), ("high_", "97.5 % "))
     ]
     return (
-        Column("scenario", "Scenario"),
-        Column("agent", "Agent"),
-        Column("speed_mps", "Speed [m/s]"),
+        *CONFIGURATION_COLUMNS,
         Column("runs", "Runs"),
         Column("converged", "Converged"),
         *times,
@@ -50,9 +52,7 @@ def table(data: PaperData) -> Table:
 def _row(key: Configuration, result: TrainingResult) -> tuple[Cell, ...]:
     episodes, truncated = int(result.episodes_flown.sum()), int(result.truncated.sum())
     return (
-        key.scenario,
-        AGENT_LABELS[key.agent],
-        key.speed,
+        *configuration_cells(key),
         result.run_ids.size,
         int(converged(result).sum()),
         *_times(result),

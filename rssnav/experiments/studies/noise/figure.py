@@ -32,15 +32,19 @@ _LINES = dict(zip(CORRELATIONS, ("-", "--"), strict=True))
 @styled
 def draw(outcomes: Sequence[Outcome]) -> Figure:
     """Draw a column per scenario and rule, a row per measure, a curve per fluctuation."""
-    scenarios = sorted({outcome.scenario for outcome in outcomes})
+    scenarios = sorted({outcome.setting.scenario for outcome in outcomes})
     columns = list(product(scenarios, _RULES))
     figure = new_figure(PAGE_IN, 1.6 * len(_MEASURES))
     panels = figure.subplots(len(_MEASURES), len(columns), sharex="col", sharey="row")
     for row, (name, measure) in enumerate(_MEASURES.items()):
         for column, (scenario, rule) in enumerate(columns):
             ax = panels[row, column]
-            of_rule = [o for o in outcomes if (o.scenario, o.setting.rule) == (scenario, rule)]
-            _draw_curves(ax, of_rule, measure)
+            of_panel = [
+                outcome
+                for outcome in outcomes
+                if (outcome.setting.scenario, outcome.setting.rule) == (scenario, rule)
+            ]
+            _draw_curves(ax, of_panel, measure)
             if name in _LOGARITHMIC:
                 ax.set_yscale("log")
             if row == 0:

@@ -1,8 +1,7 @@
-"""Trainings with readings that fluctuate, and what came of them."""
+"""Trainings with RSS readings that fluctuate, and their outcomes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from typing import Literal
@@ -11,11 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.agents import RssAgent
+from rssnav.experiments.studies.study import Conditions
 from rssnav.results import TrainingResult
 from rssnav.states import ExactStates, Fluctuation, IntervalStates, StateRule, ToleranceStates
 from rssnav.training import train
 from rssnav.world import GridWorld
 
+SCENARIOS = (1, 2)
+SPEED = 2
 SIGMAS_DB = (0.0, 0.5, 1.0, 2.0, 4.0)
 CORRELATIONS = (0.0, 0.9)
 THRESHOLDS_DB = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
@@ -29,10 +31,12 @@ RuleName = Literal["exact", "tolerance", "intervals"]
 
 @dataclass(frozen=True)
 class Setting:
-    """How readings fluctuate, and how they become states.
+    """A scenario, how RSS readings fluctuate in it, and how they become states.
 
     Attributes
     ----------
+    scenario : int
+        1 or 2.
     rule : {"exact", "tolerance", "intervals"}
         How a reading becomes a state.
     width_db : float
@@ -41,6 +45,7 @@ class Setting:
         How readings differ from the map.
     """
 
+    scenario: int
     rule: RuleName
     width_db: float
     fluctuation: Fluctuation
@@ -55,41 +60,47 @@ class Setting:
         return IntervalStates.uniform(low_dbm, high_dbm, self.width_db)
 
 
-def settings() -> Iterator[Setting]:
-    """Yield exact states for steady readings, then all rules for every fluctuation."""
-    yield Setting("exact", 0.0, Fluctuation())
+def settings() -> tuple[Setting, ...]:
+    """List exact states without fluctuation, then all rules with every fluctuation."""
     rules: list[tuple[RuleName, float]] = [
         *(("tolerance", threshold_db) for threshold_db in THRESHOLDS_DB),
         *(("intervals", width_db) for width_db in WIDTHS_DB),
     ]
-    for sigma_db, correlation in product(SIGMAS_DB, CORRELATIONS):
-        if sigma_db == 0.0 and correlation > 0.0:
-            continue
-        for rule, width_db in rules:
-            yield Setting(rule, width_db, Fluctuation(sigma_db, correlation))
+    fluctuations = [
+        Fluctuation(sigma_db, correlation)
+        for sigma_db, correlation in product(SIGMAS_DB, CORRELATIONS)
+        if sigma_db > 0.0 or correlation == 0.0
+    ]
+    choices: list[tuple[RuleName, float, Fluctuation]] = [
+        ("exact", 0.0, Fluctuation()),
+        *(
+            (rule, width_db, fluctuation)
+            for fluctuation in fluctuations
+            for rule, width_db in rules
+        ),
+    ]
+    return tuple(Setting(scenario, *choice) for scenario in SCENARIOS for choice in choices)
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What came of a setting in a scenario, of R runs.
+    """Outcome of a setting over R runs.
 
     Attributes
     ----------
-    scenario : int
     setting : Setting
     converged : (R,) bool
         Whether the run flew the same path three times in a row.
     arrived : (R,) bool
-        Whether the greedy flight, with steady readings, reaches the source.
+        Whether the greedy flight, without fluctuation, reaches the source.
     n_states : (R,) int64
-        States the agent told apart in the end.
+        Discrete states of the agent at the end.
     success : (R,) float64
-        Share of the last episodes that ended by a reading that says the source is found.
+        Fraction of the last episodes that a reading above the goal's level ended.
     steps : (R,) float64
-        Mean steps of the last episodes, those cut included.
+        Mean steps of the last episodes, truncated ones included.
     """
 
-    scenario: int
     setting: Setting
     converged: NDArray[np.bool_]
     arrived: NDArray[np.bool_]
@@ -98,15 +109,7 @@ class Outcome:
     steps: NDArray[np.float64]
 
 
-def measure(
-    scenario: int,
-    world: GridWorld,
-    setting: Setting,
-    *,
-    runs: int,
-    seed: int,
-    threads: int | None,
-) -> Outcome:
+def measure(setting: Setting, conditions: Conditions) -> list[Outcome]:
     """Train the RSS agent for 5000 episodes or a million steps, whichever ends first.
 
     Raises
@@ -114,18 +117,18 @@ def measure(
     TrainingInterrupted
         On Ctrl-C.
     """
+    world = conditions.worlds[setting.scenario, SPEED]
     result = train(
         world,
         RssAgent(setting.states(world), fluctuation=setting.fluctuation),
-        runs=runs,
+        runs=conditions.runs,
         episodes=EPISODES,
-        seed=seed,
+        seed=conditions.seed,
         max_total_steps=STEP_LIMIT,
-        threads=threads,
+        threads=conditions.threads,
     )
     last = _last_episodes(result)
-    return Outcome(
-        scenario=scenario,
+    outcome = Outcome(
         setting=setting,
         converged=result.converged_episode >= 0,
         arrived=result.reached,
@@ -133,6 +136,7 @@ def measure(
         success=_mean_of(~result.truncated, last),
         steps=_mean_of(result.steps, last),
     )
+    return [outcome]
 
 
 def _last_episodes(result: TrainingResult) -> NDArray[np.bool_]:

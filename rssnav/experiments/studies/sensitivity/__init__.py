@@ -1,93 +1,46 @@
 """What each choice that the paper leaves open does to the result.
 
-Every alternative changes one parameter of our reading and trains all twelve configurations with
-it. A run that converges neither within 20 000 episodes nor within 25 million steps is given up.
+Every alternative changes one parameter of our interpretation and trains all twelve configurations
+with it. A run that converges neither within 20 000 episodes nor within 25 million steps is given
+up.
 """
 
 from __future__ import annotations
 
-import dataclasses
-from pathlib import Path
+from collections.abc import Sequence
 
-from rssnav.experiments.paper import trainings
-from rssnav.experiments.paper.data import SPEEDS, Scenario
-from rssnav.experiments.studies.common import (
-    Progress,
-    Study,
-    Worlds,
-    load_scenarios,
-    no_progress,
-    write_study,
-)
+from matplotlib.figure import Figure
+
 from rssnav.experiments.studies.sensitivity import figure
 from rssnav.experiments.studies.sensitivity.alternatives import (
     ALTERNATIVES,
     FLOWN,
     OURS,
     Outcome,
-    outcomes_of,
+    measure,
+    trials,
 )
 from rssnav.experiments.studies.sensitivity.tables import outcome_table, summary_table
+from rssnav.experiments.studies.study import Study
+from rssnav.experiments.tables import Table
 
-RUNS = 20
-QUICK_RUNS = 2
-
-
-def run(
-    out: str | Path = "results",
-    *,
-    quick: bool = False,
-    seed: int = 0,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> Study:
-    """Train every alternative; write tables (CSV, Markdown) and a figure below ``out``.
-
-    Parameters
-    ----------
-    out : str or Path
-        Folder of the maps, which are traced when missing, and of ``tables/`` and ``figures/``.
-    quick : bool
-        Two realisations in place of twenty.
-    seed : int
-        Same seed, same results, for any number of threads.
-    threads : int, optional
-        Threads; all cores by default.
-    progress : callable, optional
-        Called as ``progress(stage, done, total)``.
-
-    Raises
-    ------
-    TrainingInterrupted
-        On Ctrl-C.
-    """
-    out, tell = Path(out), progress or no_progress
-    scenarios = load_scenarios(out, threads, tell)
-    power = trainings.worlds(scenarios, SPEEDS)
-    coherent = _coherent_worlds(scenarios, power)
-    keys = trainings.configurations(scenarios, SPEEDS)
-    work = [(choice, key) for choice in (OURS, *ALTERNATIVES) for key in keys]
-    work = [(choice, key) for choice, key in work if choice.concerns(key)]
-    outcomes: list[Outcome] = []
-    for done, (choice, key) in enumerate(work):
-        tell("alternatives", done, len(work))
-        world = (coherent if choice.coherent else power)[key.scenario, key.speed]
-        runs = QUICK_RUNS if quick else RUNS
-        outcomes += outcomes_of(choice, key, world, runs=runs, seed=seed, threads=threads)
-    tell("alternatives", len(work), len(work))
-    outcomes.sort(key=lambda outcome: _ORDER.index(outcome.alternative))
-    tables = (summary_table(outcomes), outcome_table(outcomes))
-    return write_study(out, tables, {"sensitivity": figure.draw(outcomes)})
+_ROWS = {choice: row for row, choice in enumerate((OURS, FLOWN, *ALTERNATIVES))}
 
 
-_ORDER = (OURS, FLOWN, *ALTERNATIVES)
+def make_tables(outcomes: Sequence[Outcome]) -> tuple[Table, ...]:
+    """Make the summary and the table of all outcomes."""
+    ordered = _in_order(outcomes)
+    return summary_table(ordered), outcome_table(ordered)
 
 
-def _coherent_worlds(scenarios: dict[int, Scenario], power: Worlds) -> Worlds:
-    """The same worlds with the coherent sum for a map."""
-    return {
-        (number, speed): dataclasses.replace(
-            world, rss_dbm=scenarios[number].radio_map.rss_coherent_dbm[tuple(world.cell.T)]
-        )
-        for (number, speed), world in power.items()
-    }
+def draw_figures(outcomes: Sequence[Outcome]) -> dict[str, Figure]:
+    """Draw the final flights' lengths under every alternative."""
+    return {"sensitivity": figure.draw(_in_order(outcomes))}
+
+
+def _in_order(outcomes: Sequence[Outcome]) -> list[Outcome]:
+    """Sort outcomes by alternative: ours, ours as flown, the others."""
+    return sorted(outcomes, key=lambda outcome: _ROWS[outcome.alternative])
+
+
+STUDY = Study("sensitivity", 20, 2, trials(), measure, make_tables, draw_figures)

@@ -1,4 +1,4 @@
-"""The alternatives to our reading of the paper, and what comes of each."""
+"""The alternatives to our interpretation of the paper, and the outcome of each."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.agents import QLearning
-from rssnav.experiments.paper.data import AGENTS, SHOWN_EPISODES, Configuration
-from rssnav.experiments.paper.printed_values import EPISODE_LIMIT
+from rssnav.experiments.paper.data import AGENTS, CONFIGURATIONS, SHOWN_EPISODES, Configuration
+from rssnav.experiments.paper.trainings import EPISODE_LIMIT
+from rssnav.experiments.studies.study import Conditions
 from rssnav.results import TrainingResult
 from rssnav.training import train
 from rssnav.world import GridWorld, WorldError
 
 STEP_LIMIT = 25_000_000
-"""Steps after which a run is given up; our reading needs 10 million at most to converge."""
+"""Steps after which a run is given up; our interpretation converges within 10 million."""
 
 
 @dataclass(frozen=True)
@@ -26,13 +27,13 @@ class Alternative:
     Attributes
     ----------
     parameter, choice : str
-        What is chosen, and how.
+        The parameter and its value, in words.
     learning : QLearning
-        Parameters with this choice.
+        Learning parameters with this choice.
     coherent : bool
         Whether the map sums the paths' fields instead of their powers.
     episodes : int or None
-        Train as many episodes and no more, not until convergence.
+        Train exactly this many episodes instead of until convergence.
     """
 
     parameter: str
@@ -47,13 +48,13 @@ class Alternative:
         return f"{self.parameter}: {self.choice}"
 
     def concerns(self, key: Configuration) -> bool:
-        """Whether it can make a difference: the location agent never looks at the map."""
+        """Whether it can make a difference: the location agent does not use the RSS."""
         return not self.coherent or key.agent == "rss"
 
 
-OURS = Alternative("our reading", "defaults")
+OURS = Alternative("our interpretation", "defaults")
 FLOWN = Alternative("final trajectory", "flown three times")
-"""No training of its own: the flights by which the defaults converged, in place of greedy ones."""
+"""No training of its own: the flights in which the defaults converged, not the greedy ones."""
 
 ALTERNATIVES: tuple[Alternative, ...] = (
     *(Alternative("initial Q", f"{q:g}", QLearning(initial_q=q)) for q in (0.0, 20.0, 50.0)),
@@ -70,9 +71,27 @@ ALTERNATIVES: tuple[Alternative, ...] = (
 )
 
 
+@dataclass(frozen=True)
+class Trial:
+    """An alternative in one configuration."""
+
+    alternative: Alternative
+    key: Configuration
+
+
+def trials() -> tuple[Trial, ...]:
+    """List every alternative in the configurations it concerns, ours first."""
+    return tuple(
+        Trial(alternative, key)
+        for alternative in (OURS, *ALTERNATIVES)
+        for key in CONFIGURATIONS
+        if alternative.concerns(key)
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What came of an alternative in one configuration.
+    """Outcome of an alternative in one configuration.
 
     Attributes
     ----------
@@ -98,40 +117,43 @@ class Outcome:
     obstacle: str = ""
 
 
-def outcomes_of(
-    alternative: Alternative,
-    key: Configuration,
-    world: GridWorld,
-    *,
-    runs: int,
-    seed: int,
-    threads: int | None,
-) -> list[Outcome]:
-    """Train an alternative in a configuration; our own reading also gives :data:`FLOWN`.
+def measure(trial: Trial, conditions: Conditions) -> list[Outcome]:
+    """Train an alternative in a configuration; :data:`OURS` also gives :data:`FLOWN`.
 
     Raises
     ------
     TrainingInterrupted
         On Ctrl-C.
     """
+    alternative, key = trial.alternative, trial.key
     try:
         result = train(
-            world,
+            _world(trial, conditions),
             AGENTS[key.agent],
-            runs=runs,
+            runs=conditions.runs,
             episodes=alternative.episodes or EPISODE_LIMIT,
-            seed=seed,
+            seed=conditions.seed,
             learning=alternative.learning,
             until_converged=alternative.episodes is None,
             min_episodes=1,
             max_total_steps=STEP_LIMIT,
-            threads=threads,
+            threads=conditions.threads,
         )
     except WorldError as error:
         none = np.empty(0)
-        return [Outcome(alternative, key, runs, none, none, none, none, str(error))]
+        return [Outcome(alternative, key, conditions.runs, none, none, none, none, str(error))]
     outcome = _greedy(alternative, key, result)
-    return [outcome, _flown(outcome, result)] if alternative is OURS else [outcome]
+    return [outcome, _flown(outcome, result)] if alternative == OURS else [outcome]
+
+
+def _world(trial: Trial, conditions: Conditions) -> GridWorld:
+    """World of a trial; for a coherent sum the same world with that RSS."""
+    key = trial.key
+    world = conditions.worlds[key.scenario, key.speed]
+    if not trial.alternative.coherent:
+        return world
+    radio_map = conditions.scenarios[key.scenario].radio_map
+    return dataclasses.replace(world, rss_dbm=radio_map.rss_coherent_dbm[tuple(world.cell.T)])
 
 
 def _greedy(alternative: Alternative, key: Configuration, result: TrainingResult) -> Outcome:

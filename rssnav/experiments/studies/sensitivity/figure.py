@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS, SPEEDS
+from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
+from rssnav.experiments.paper.scenarios import SPEEDS
 from rssnav.experiments.studies.sensitivity.alternatives import OURS, Outcome
 from rssnav.pictures.style import FAINT, INK, PAGE_IN, label_panel, new_figure, styled
 
@@ -51,7 +52,7 @@ def draw(outcomes: Sequence[Outcome]) -> Figure:
 def _draw_outcome(panel: _Panel, outcome: Outcome) -> None:
     """Draw mean and standard deviation; hollow where not every run converged."""
     marker, colour = _MARKERS[outcome.key.speed]
-    if outcome.alternative is OURS:
+    if outcome.alternative == OURS:
         panel.ax.axvline(
             PATH_LENGTH_M[outcome.key], color=colour, linewidth=0.7, linestyle=":", zorder=1
         )

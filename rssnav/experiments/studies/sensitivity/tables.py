@@ -7,11 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.experiments.paper.data import AGENT_LABELS, Configuration
+from rssnav.experiments.paper.data import Configuration
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
+from rssnav.experiments.paper.tables.configuration import (
+    CONFIGURATION_COLUMNS,
+    configuration_cells,
+)
 from rssnav.experiments.statistics import difference
 from rssnav.experiments.studies.sensitivity.alternatives import OURS, Alternative, Outcome
-from rssnav.experiments.tables import Cell, Column, Table
+from rssnav.experiments.tables import Cell, Column, Table, mean_cell, sd_cell
 
 TOLERANCE = 0.10
 """Deviation from the paper's length that counts as agreement."""
@@ -19,19 +23,17 @@ TOLERANCE = 0.10
 
 def outcome_table(outcomes: Sequence[Outcome]) -> Table:
     """Make a row per alternative and configuration."""
-    ours = {outcome.key: outcome for outcome in outcomes if outcome.alternative is OURS}
+    ours = {outcome.key: outcome for outcome in outcomes if outcome.alternative == OURS}
     return Table(
         "sensitivity",
         "What the paper leaves open, choice by choice",
-        "Each row changes one parameter of our reading. Episodes and flown steps to convergence: "
-        "means over the runs that converge. Lengths: means over the final flights that arrive; "
-        "their difference from our reading with its 95 % bootstrap interval.",
+        "Each row changes one parameter of our interpretation. Episodes and flown steps to "
+        "convergence: means over the runs that converge. Lengths: means over the final flights "
+        "that arrive; their difference from our interpretation with its 95 % bootstrap interval.",
         (
             Column("parameter", "Parameter"),
             Column("choice", "Choice"),
-            Column("scenario", "Scenario"),
-            Column("agent", "Agent"),
-            Column("speed_mps", "Speed [m/s]"),
+            *CONFIGURATION_COLUMNS,
             Column("runs", "Runs"),
             Column("converged", "Converge"),
             Column("episodes", "Episodes"),
@@ -52,15 +54,15 @@ def outcome_table(outcomes: Sequence[Outcome]) -> Table:
 
 def summary_table(outcomes: Sequence[Outcome]) -> Table:
     """Make a row per alternative, over all configurations it concerns."""
-    ours = {outcome.key: outcome for outcome in outcomes if outcome.alternative is OURS}
+    ours = {outcome.key: outcome for outcome in outcomes if outcome.alternative == OURS}
     alternatives = dict.fromkeys(outcome.alternative for outcome in outcomes)
     return Table(
         "sensitivity_summary",
         "What the paper leaves open, in short",
-        "Converge and arrive: runs of all configurations. Ratios to our reading: means over the "
-        "configurations in which every run converges, or for lengths in which every final flight "
-        "arrives, and the extremes. Agree: configurations in which every final flight arrives and "
-        f"the mean length is within {TOLERANCE:.0%} of the paper's.",
+        "Converge and arrive: runs of all configurations. Ratios to our interpretation: means over "
+        "the configurations in which every run converges, or for lengths in which every final "
+        "flight arrives, and the extremes. Agree: configurations in which every final flight "
+        f"arrives and the mean length is within {TOLERANCE:.0%} of the paper's.",
         (
             Column("parameter", "Parameter"),
             Column("choice", "Choice"),
@@ -76,7 +78,7 @@ def summary_table(outcomes: Sequence[Outcome]) -> Table:
             Column("configurations", "of"),
         ),
         tuple(
-            _summary(choice, [o for o in outcomes if o.alternative is choice], ours)
+            _summary(choice, [o for o in outcomes if o.alternative == choice], ours)
             for choice in alternatives
         ),
     )
@@ -91,17 +93,15 @@ def _row(outcome: Outcome, ours: Outcome) -> tuple[Cell, ...]:
     return (
         outcome.alternative.parameter,
         outcome.alternative.choice,
-        key.scenario,
-        AGENT_LABELS[key.agent],
-        key.speed,
+        *configuration_cells(key),
         outcome.runs,
         outcome.episodes.size,
-        _mean(outcome.episodes),
-        _mean(outcome.steps),
+        mean_cell(outcome.episodes),
+        mean_cell(outcome.steps),
         length_m.size,
-        _mean(outcome.path_steps),
-        _mean(length_m),
-        float(length_m.std(ddof=1)) if length_m.size > 1 else None,
+        mean_cell(outcome.path_steps),
+        mean_cell(length_m),
+        sd_cell(length_m),
         *compared,
         PATH_LENGTH_M[key],
         outcome.obstacle,
@@ -120,9 +120,9 @@ def _summary(
         sum(outcome.runs for outcome in outcomes),
         sum(outcome.episodes.size for outcome in outcomes),
         sum(outcome.length_m.size for outcome in outcomes),
-        _mean([_ratio(outcome.episodes, ours[outcome.key].episodes) for outcome in whole]),
-        _mean([_ratio(outcome.steps, ours[outcome.key].steps) for outcome in whole]),
-        _mean(lengths),
+        mean_cell([_ratio(outcome.episodes, ours[outcome.key].episodes) for outcome in whole]),
+        mean_cell([_ratio(outcome.steps, ours[outcome.key].steps) for outcome in whole]),
+        mean_cell(lengths),
         min(lengths, default=None),
         max(lengths, default=None),
         sum(_agrees(outcome) for outcome in arriving),
@@ -139,7 +139,3 @@ def _agrees(outcome: Outcome) -> bool:
 def _ratio(values: NDArray[np.float64], of: NDArray[np.float64]) -> float:
     """Ratio of the means; 0 where there is nothing to compare."""
     return float(values.mean() / of.mean()) if values.size and of.size else 0.0
-
-
-def _mean(values: Sequence[float] | NDArray[np.float64]) -> float | None:
-    return float(np.mean(values)) if len(values) else None

@@ -10,7 +10,8 @@ from rssnav.experiments.paper.claims import CLAIMS, Finding, Verdict, claims_tab
 from rssnav.experiments.paper.claims.flights import mean_rss_dbm, strong_share, turns
 from rssnav.experiments.paper.claims.learning import fluctuation
 from rssnav.experiments.paper.claims.verdicts import between, case, positive
-from rssnav.experiments.paper.data import AGENTS, SPEEDS, Configuration, flights, terminal_states
+from rssnav.experiments.paper.data import AGENTS, Configuration, flights, terminal_states
+from rssnav.experiments.paper.scenarios import SPEEDS
 from rssnav.experiments.paper.shortest_flights import shortest_flights
 from rssnav.experiments.statistics import Estimate
 from rssnav.planning import path_length_m, shortest_path

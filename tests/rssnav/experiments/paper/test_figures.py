@@ -11,6 +11,7 @@ from small_paper import RUNS, small_data
 
 from rssnav.experiments.paper.data import AGENTS, SHOWN_EPISODES, VISIT_EPISODES
 from rssnav.experiments.paper.figures import (
+    FIGURES,
     agent_loop,
     convergence_time,
     heat_maps,
@@ -18,7 +19,6 @@ from rssnav.experiments.paper.figures import (
     trajectories,
     visits,
 )
-from rssnav.experiments.paper.registry import FIGURES
 from rssnav.experiments.statistics import mean
 from rssnav.pictures.style import AGENT_COLOURS, PAGE_IN, png_bytes, save_figure, shade
 

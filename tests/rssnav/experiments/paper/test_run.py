@@ -16,13 +16,14 @@ from rssnav.experiments.paper import report_again, run_paper, trainings
 from rssnav.experiments.paper import run as paper
 from rssnav.experiments.paper.claims import CLAIMS
 from rssnav.experiments.paper.data import Configuration
+from rssnav.experiments.paper.figures import FIGURES
 from rssnav.experiments.paper.first_episodes import first_episodes
-from rssnav.experiments.paper.interpretation import READINGS, parameters
+from rssnav.experiments.paper.interpretation import INTERPRETATIONS
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
-from rssnav.experiments.paper.registry import FIGURES
+from rssnav.experiments.paper.provenance import parameters
 from rssnav.experiments.paper.report import Report, number, render
 from rssnav.experiments.paper.tables.convergence import table as convergence_table
-from rssnav.experiments.paper.tables.path_lengths import optimum_table
+from rssnav.experiments.paper.tables.optimum import table as optimum_table
 from rssnav.experiments.paper.tables.path_lengths import table as path_lengths
 from rssnav.experiments.paper.trainings import TrainingPlan
 from rssnav.experiments.tables import Column, Table
@@ -97,7 +98,7 @@ def test_the_report_shows_every_figure_table_and_claim(run):
     for claim in CLAIMS:
         assert f'id="claim-{claim.key}"' in run.html
     assert run.html.count("data:image/png;base64,") == len(FIGURES)
-    for reading in READINGS:
+    for reading in INTERPRETATIONS:
         assert escape(reading.name).replace("&#x27;", "&#39;") in run.html
     for scenario in run.paper.data.scenarios.values():
         assert scenario.plan.sha256 in run.html
@@ -135,7 +136,7 @@ def test_a_second_call_takes_everything_over(run):
     again = run.again()
     assert {path: path.stat().st_mtime_ns for path in before} == before
     assert (
-        f"12 of 12 trainings were taken over from {run.out / 'training' / f'{RUNS}-runs'}"
+        f"12 of 12 trainings were reused from {run.out / 'training' / f'{RUNS}-runs'}"
         in run.notices
     )
     assert again.record.trained == {}
@@ -227,7 +228,7 @@ def test_an_interrupted_training_goes_on(tmp_path, world, monkeypatch):
     monkeypatch.undo()
     result, trained = training_plan(tmp_path, said).result(KEY, world)
     assert trained
-    assert "going on from 1 of 2 runs" in said[-1]
+    assert "continuing from 1 of 2 runs" in said[-1]
     np.testing.assert_array_equal(result.steps, whole.steps)
 
 

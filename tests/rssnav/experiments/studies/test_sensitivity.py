@@ -8,7 +8,7 @@ import pytest
 from rssnav import LocationAgent, QLearning, RssAgent, train
 from rssnav.experiments.paper.data import AGENTS, Configuration
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
-from rssnav.experiments.studies import sensitivity
+from rssnav.experiments.studies import run_study, sensitivity
 from rssnav.experiments.studies.sensitivity import figure
 from rssnav.experiments.studies.sensitivity.alternatives import (
     ALTERNATIVES,
@@ -16,12 +16,13 @@ from rssnav.experiments.studies.sensitivity.alternatives import (
     OURS,
     Alternative,
     Outcome,
-    outcomes_of,
+    Trial,
+    measure,
 )
 from rssnav.experiments.studies.sensitivity.tables import outcome_table, summary_table
+from rssnav.experiments.studies.study import Conditions
 
 KEY = Configuration(1, "rss", 1)
-OPTIONS = {"runs": 3, "seed": 0, "threads": 1}
 QUICK = Alternative("decay", "quick", QLearning(eta=1e-3, max_steps=500), episodes=None)
 NONE = np.empty(0)
 
@@ -32,7 +33,7 @@ def outcome(alternative, key, lengths_m, runs=2, episodes=(10.0, 20.0)):
     return Outcome(alternative, key, runs, flown, 100.0 * flown, lengths, lengths / 2.0)
 
 
-def test_every_alternative_differs_from_our_reading_in_one_respect():
+def test_every_alternative_differs_from_our_interpretation_in_one_respect():
     for alternative in ALTERNATIVES:
         changed = [
             name
@@ -49,8 +50,13 @@ def test_a_map_of_fields_concerns_the_rss_agent_only():
     assert [agent for agent in AGENTS if coherent.concerns(Configuration(1, agent, 1))] == ["rss"]
 
 
-def test_outcomes_are_those_of_the_training(room_world):
-    (measured,) = outcomes_of(QUICK, KEY, room_world, **OPTIONS)
+@pytest.fixture
+def conditions(room_world):
+    return Conditions({}, {(1, 1): room_world}, runs=3, seed=0, threads=1)
+
+
+def test_outcomes_are_those_of_the_training(room_world, conditions):
+    (measured,) = measure(Trial(QUICK, KEY), conditions)
     result = train(
         room_world,
         RssAgent(),
@@ -65,10 +71,10 @@ def test_outcomes_are_those_of_the_training(room_world):
     assert np.array_equal(measured.length_m, result.path_length_m[result.reached])
 
 
-def test_flown_trajectories_are_the_third_of_the_equal_flights(room_world, monkeypatch):
+def test_flown_trajectories_are_the_third_of_the_equal_flights(room_world, conditions):
     """Greedy and flown lengths agree once the policy no longer explores."""
     key = Configuration(1, "location", 1)
-    _, flown = outcomes_of(OURS, key, room_world, **OPTIONS)
+    _, flown = measure(Trial(OURS, key), conditions)
     result = train(
         room_world, LocationAgent(), runs=3, episodes=20_000, until_converged=True, min_episodes=1
     )
@@ -79,14 +85,14 @@ def test_flown_trajectories_are_the_third_of_the_equal_flights(room_world, monke
         assert flown.length_m[run] == result.episode_length_m[run, k - 1]
 
 
-def test_a_world_that_cannot_be_learnt_is_an_obstacle(room_world):
+def test_a_world_that_cannot_be_learnt_is_an_obstacle(room_world, conditions):
     dim = replace(room_world, rss_dbm=room_world.rss_dbm - 50.0)
-    (measured,) = outcomes_of(QUICK, KEY, dim, **OPTIONS)
+    (measured,) = measure(Trial(QUICK, KEY), replace(conditions, worlds={(1, 1): dim}))
     assert "no cell with RSS > -21 dBm" in measured.obstacle
     assert measured.length_m.size == measured.episodes.size == 0
 
 
-def test_summary_compares_with_our_reading():
+def test_summary_compares_with_our_interpretation():
     other = Configuration(1, "location", 1)
     paper_m, other_m = PATH_LENGTH_M[KEY], PATH_LENGTH_M[other]
     outcomes = [
@@ -131,13 +137,21 @@ def test_figure_has_a_marker_per_outcome_and_hollow_ones_where_runs_do_not_conve
     ]
 
 
-def test_the_whole_study_runs(small_study, monkeypatch):
-    monkeypatch.setattr(sensitivity, "ALTERNATIVES", (QUICK,))
-    monkeypatch.setattr(sensitivity, "_ORDER", (OURS, FLOWN, QUICK))
-    monkeypatch.setattr(sensitivity, "SPEEDS", (1,))
+def test_the_whole_study_runs(small_study):
+    coherent = next(alternative for alternative in ALTERNATIVES if alternative.coherent)
+    keys = [Configuration(scenario, agent, 1) for scenario in (1, 2) for agent in AGENTS]
+    pieces = (
+        *(Trial(OURS, key) for key in keys),
+        *(Trial(coherent, key) for key in keys if coherent.concerns(key)),
+    )
     seen = []
-    study = sensitivity.run(small_study, quick=True, progress=lambda *step: seen.append(step))
-    assert seen[-1] == ("alternatives", 8, 8)
-    assert len(study.tables[0].rows) == 3
-    assert len(study.tables[1].rows) == 12
+    study = replace(sensitivity.STUDY, pieces=pieces)
+    result = run_study(study, small_study, quick=True, progress=lambda *step: seen.append(step))
+    assert seen[-1] == ("sensitivity", 6, 6)
+    assert len(result.tables[0].rows) == 3
+    assert [row["parameter"] for row in result.tables[1].records()] == [
+        *["our interpretation"] * 4,
+        *["final trajectory"] * 4,
+        *["map"] * 2,
+    ]
     assert (small_study / "figures" / "sensitivity.png").is_file()

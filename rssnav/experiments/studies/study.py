@@ -1,0 +1,162 @@
+"""What a study is, and the one function that runs it.
+
+A study is data: its pieces of work, and functions that measure a piece and that make tables and
+figures of all outcomes. A piece is a hashable value that says completely what is measured, so the
+outcomes of finished pieces can be kept by it. To add a study, describe it and list it in
+:mod:`rssnav.experiments.studies`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from matplotlib.figure import Figure
+
+from rssnav.experiments.paper.scenarios import (
+    PLANS,
+    Scenario,
+    Worlds,
+    load_scenarios,
+    make_worlds,
+)
+from rssnav.experiments.progress import StageProgress, ignore
+from rssnav.experiments.tables import Table
+from rssnav.pictures.style import save_figure
+
+PieceT = TypeVar("PieceT", bound=Hashable)
+OutcomeT = TypeVar("OutcomeT")
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """What all pieces of a study are measured with.
+
+    Attributes
+    ----------
+    scenarios : dict of int to Scenario
+        Plans and maps, by the scenario's number.
+    worlds : dict of (int, int) to GridWorld
+        Worlds by (scenario, speed).
+    runs : int
+        Realisations of each training.
+    seed : int
+        Seed of all trainings.
+    threads : int or None
+        Threads; all cores for None.
+    """
+
+    scenarios: dict[int, Scenario]
+    worlds: Worlds
+    runs: int
+    seed: int
+    threads: int | None
+
+
+@dataclass(frozen=True)
+class Study(Generic[PieceT, OutcomeT]):
+    """Description of a study.
+
+    Attributes
+    ----------
+    name : str
+        Name for the command line and for progress.
+    runs, quick_runs : int
+        Realisations of each training, in full and in a quick run.
+    pieces : tuple of PieceT
+        The work, in the order in which it is done.
+    measure : callable
+        From a piece and the conditions to the piece's outcomes.
+    tables : callable
+        From all outcomes to the tables.
+    figures : callable
+        From all outcomes to the figures, by the name of their files.
+    """
+
+    name: str
+    runs: int
+    quick_runs: int
+    pieces: tuple[PieceT, ...]
+    measure: Callable[[PieceT, Conditions], Sequence[OutcomeT]]
+    tables: Callable[[Sequence[OutcomeT]], tuple[Table, ...]]
+    figures: Callable[[Sequence[OutcomeT]], dict[str, Figure]]
+
+
+@dataclass(frozen=True, eq=False)
+class StudyResult:
+    """A finished study.
+
+    Attributes
+    ----------
+    tables : tuple of Table
+        What it measured.
+    files : tuple of Path
+        Every file it wrote: the tables as CSV and Markdown, the figures as PNG.
+    """
+
+    tables: tuple[Table, ...]
+    files: tuple[Path, ...]
+
+
+def run_study(
+    study: Study[PieceT, OutcomeT],
+    out: str | Path = "results",
+    *,
+    quick: bool = False,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: StageProgress = ignore,
+) -> StudyResult:
+    """Measure every piece of a study; write its tables and figures below ``out``.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    out : str or Path
+        Folder of ``maps/``, which are traced when missing, and of ``tables/`` and ``figures/``.
+    quick : bool
+        Few realisations.
+    seed : int
+        Same seed, same results, for any number of threads.
+    threads : int, optional
+        Threads; all cores by default.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``, with a stage per map and one for the study.
+
+    Returns
+    -------
+    StudyResult
+
+    Raises
+    ------
+    PlanError, SceneError, WorldError, MapFileError
+        For a plan or map that cannot be used.
+    TrainingInterrupted
+        On Ctrl-C while training.
+    """
+    out = Path(out)
+    scenarios = load_scenarios(
+        PLANS, out / "maps", threads=threads, progress=progress, notice=ignore
+    )
+    runs = study.quick_runs if quick else study.runs
+    conditions = Conditions(scenarios, make_worlds(scenarios), runs, seed, threads)
+    outcomes: list[OutcomeT] = []
+    for done, piece in enumerate(study.pieces):
+        progress(study.name, done, len(study.pieces))
+        outcomes += study.measure(piece, conditions)
+    progress(study.name, len(study.pieces), len(study.pieces))
+    return _write(out, study.tables(outcomes), study.figures(outcomes))
+
+
+def _write(out: Path, tables: tuple[Table, ...], figures: dict[str, Figure]) -> StudyResult:
+    """Write the tables below ``tables/`` and the figures below ``figures/``."""
+    files: list[Path] = []
+    for table in tables:
+        files += [table.save_csv(out / "tables"), table.save_markdown(out / "tables")]
+    for key, figure in figures.items():
+        save_figure(figure, out / "figures" / key)
+        files.append(out / "figures" / f"{key}.png")
+    return StudyResult(tables, tuple(files))
