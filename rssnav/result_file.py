@@ -14,9 +14,9 @@ from typing import Any
 import h5py
 import numpy as np
 from numpy.typing import NDArray
-from raytrace.results.hdf5 import hdf5_bytes
 
 from atomicfiles import atomic_write
+from raytrace.results.hdf5 import hdf5_bytes
 from rssnav.agents import Agent, LocationAgent, QLearning, RssAgent
 from rssnav.results import Schedule, TrainingResult
 from rssnav.states import ExactStates, Fluctuation, IntervalStates, StateRule, ToleranceStates

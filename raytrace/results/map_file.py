@@ -11,16 +11,16 @@ from typing import Any
 
 import h5py
 import numpy as np
-from atomicfiles import atomic_write
 from numpy.typing import NDArray
 
-from raytrace.radio.antenna_patterns import PatternTable
-from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
+from atomicfiles import atomic_write
 from raytrace.errors import MapFileError
 from raytrace.grid import Grid, TraceConfig
+from raytrace.radio.antenna_patterns import PatternTable
+from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
+from raytrace.radio.transmitter import Transmitter
 from raytrace.results.hdf5 import hdf5_bytes
 from raytrace.results.radio_map import LAYERS, RadioMap
-from raytrace.radio.transmitter import Transmitter
 
 FORMAT = "rssnav radio map"
 FORMAT_VERSION = 1

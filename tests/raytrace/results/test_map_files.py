@@ -9,7 +9,17 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from raytrace import Antenna, Grid, HalfWaveDipole, Isotropic, MapFileError, PatternTable, RadioMap, TraceConfig, Transmitter
+from raytrace import (
+    Antenna,
+    Grid,
+    HalfWaveDipole,
+    Isotropic,
+    MapFileError,
+    PatternTable,
+    RadioMap,
+    TraceConfig,
+    Transmitter,
+)
 from raytrace.results import radio_map
 
 LAYERS = ("rss_dbm", "rss_coherent_dbm", "path_count")

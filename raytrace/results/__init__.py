@@ -1,0 +1,1 @@
+"""What a trace gives: paths, radio maps, their statistics and their files."""
