@@ -6,8 +6,9 @@ Lengths are in metres, heights above the floor, angles in radians, gains linear 
 ends in ``_db`` or ``_dbm``.
 """
 
-from raytrace.errors import AntennaError, MapFileError, SceneError, SceneWarning
-from raytrace.grid import Grid, TraceConfig
+from raytrace.config import TraceConfig
+from raytrace.errors import AntennaError, MapFileError, MissingMapError, SceneError, SceneWarning
+from raytrace.grid import Grid
 from raytrace.radio.antenna_patterns import PatternTable
 from raytrace.radio.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
 from raytrace.radio.materials import (
@@ -42,6 +43,7 @@ __all__ = [
     "Layered",
     "MapFileError",
     "Material",
+    "MissingMapError",
     "PathStatistics",
     "Paths",
     "PatternTable",

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.grid import Grid, TraceConfig
+from raytrace.config import TraceConfig
+from raytrace.grid import Grid
 from raytrace.kernels.tracing import new_record, new_sums
 from raytrace.radio.antennas import Antenna
 from raytrace.radio.transmitter import Transmitter

@@ -1,6 +1,6 @@
-"""The layers of a map, out of the sums over all paths."""
+"""The layers of a radio map: which there are, and how they follow from the sums over all paths."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,30 @@ from raytrace.constants import SPEED_OF_LIGHT
 from raytrace.kernels.tracing import COSINE, DETOUR, DETOUR_SQUARED, SINE, STRONGEST, Sums
 
 Floats = NDArray[np.float64]
+
+
+class LayerInfo(NamedTuple):
+    """Unit and description of a layer, and whether every map has it."""
+
+    units: str
+    long_name: str
+    required: bool = False
+
+
+LAYERS: dict[str, LayerInfo] = {
+    "rss_dbm": LayerInfo("dBm", "received signal strength, sum of the paths' powers", True),
+    "rss_coherent_dbm": LayerInfo(
+        "dBm", "received signal strength, power of the sum of the paths' fields", True
+    ),
+    "path_count": LayerInfo("1", "number of paths", True),
+    "strongest_path_dbm": LayerInfo("dBm", "power of the strongest path"),
+    "mean_delay_s": LayerInfo("s", "mean delay, weighted with power"),
+    "delay_spread_s": LayerInfo("s", "RMS delay spread, weighted with power"),
+    "angular_spread": LayerInfo("1", "azimuth spread of arrival after Fleury, 0 to 1"),
+    "k_factor_db": LayerInfo("dB", "power of the strongest path over that of all others"),
+    "left_out_db": LayerInfo("dB", "bound on the level of what was left out over the RSS"),
+}
+"""The fields of a `RadioMap` that hold one value per cell, in the order they are stored in."""
 
 
 def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDArray[Any]]:

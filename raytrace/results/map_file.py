@@ -5,40 +5,83 @@
 antenna given by a table stands in the group `transmit_antenna`.
 """
 
+from collections.abc import Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from atomicfiles import atomic_write
-from raytrace.errors import MapFileError
-from raytrace.grid import Grid, TraceConfig
+from raytrace.config import TraceConfig
+from raytrace.errors import MapFileError, MissingMapError
+from raytrace.grid import Grid
 from raytrace.radio.antenna_patterns import PatternTable
 from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.hdf5 import hdf5_bytes
-from raytrace.results.radio_map import LAYERS, RadioMap
+from raytrace.results.layers import LAYERS
 
 FORMAT = "rssnav radio map"
 FORMAT_VERSION = 1
 
+_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_MARKS = (FORMAT.encode(), b"rss_coherent_dbm")
 _ANTENNA = "transmit_antenna"
 _ANTENNAS: dict[str, type[HalfWaveDipole | Isotropic | PatternTable]] = {
     kind.__name__: kind for kind in (HalfWaveDipole, Isotropic, PatternTable)
 }
 
 
-def save_radio_map(radio_map: RadioMap, path: Path) -> None:
+class MapContents(Protocol):
+    """What a file stores of a `RadioMap`; its attributes have the same names and meaning."""
+
+    @property
+    def layers(self) -> Mapping[str, NDArray[Any]]:
+        """(n_y, n_x) each, by name."""
+        ...
+
+    @property
+    def grid(self) -> Grid:
+        """Receivers."""
+        ...
+
+    @property
+    def transmitter(self) -> Transmitter:
+        """Position, power, frequency, antenna."""
+        ...
+
+    @property
+    def config(self) -> TraceConfig:
+        """Limits of the trace."""
+        ...
+
+    @property
+    def plan_text(self) -> str:
+        """The floor plan's TOML text."""
+        ...
+
+    @property
+    def plan_sha256(self) -> str:
+        """Its hash."""
+        ...
+
+    @property
+    def provenance(self) -> Mapping[str, Any]:
+        """Versions, wall time and the like."""
+        ...
+
+
+def write_map_file(radio_map: MapContents, path: Path) -> None:
     """Write a map; a run that is killed leaves the old file or none."""
     content = hdf5_bytes(lambda file: _write(radio_map, file))
     with atomic_write(path) as temporary:
         temporary.write_bytes(content)
 
 
-def _write(radio_map: RadioMap, file: h5py.File) -> None:
+def _write(radio_map: MapContents, file: h5py.File) -> None:
     for axis in ("y", "x"):
         scale = file.create_dataset(axis, data=getattr(radio_map.grid, axis))
         scale.attrs.update(units="m", long_name=f"{axis} of the cell centres")
@@ -59,8 +102,8 @@ def _save_pattern(antenna: Antenna, file: h5py.File) -> None:
             file.create_dataset(f"{_ANTENNA}/{name}", data=value)
 
 
-def attributes_of(radio_map: RadioMap) -> dict[str, Any]:
-    """What made a map, as a file and a data set hold it; what is None is left out."""
+def attributes_of(radio_map: MapContents) -> dict[str, Any]:
+    """Return what made a map, as a file and a data set store it, without what is None."""
     transmitter, grid = radio_map.transmitter, radio_map.grid
     antenna = {k: v for k, v in vars(transmitter.antenna).items() if not isinstance(v, np.ndarray)}
     attributes = {
@@ -81,73 +124,102 @@ def attributes_of(radio_map: RadioMap) -> dict[str, Any]:
     return {key: value for key, value in attributes.items() if value is not None}
 
 
-def load_radio_map(path: Path) -> RadioMap:
-    """Read a map.
+def read_map_file(path: Path) -> dict[str, Any]:
+    """Read a map: the fields of `RadioMap` by name.
 
     Raises
     ------
-    FileNotFoundError
+    MissingMapError
         Where there is no such file.
     MapFileError
         Where it is not a whole map of this version; the message names what is wrong.
     """
     if not path.exists():
-        raise FileNotFoundError(f"{path}: no such map file; `rssnav map PLAN -o {path}` makes one")
+        raise MissingMapError(path)
     try:
         with h5py.File(path) as file:
             return _read(file, path)
     except OSError as error:
-        raise MapFileError(
-            f"{path}: not an HDF5 file, or a truncated one ({error}); "
-            f"make it anew: `rssnav map PLAN -o {path}`"
-        ) from error
+        raise _damaged(path, f"not an HDF5 file, or a truncated one ({error})") from error
     except (KeyError, TypeError, ValueError, RuntimeError) as error:
         if isinstance(error, MapFileError):
             raise
-        raise MapFileError(f"{path}: the map is damaged ({error}); make it anew") from error
+        raise _damaged(path, f"the map is damaged ({error})") from error
 
 
-def _read(file: h5py.File, path: Path) -> RadioMap:
+def is_radio_map(path: Path) -> bool:
+    """Return whether an unreadable file is what is left of a radio map, of any version.
+
+    A file that HDF5 cannot open is one if it begins like HDF5 and holds the name of the format or
+    of a dataset that only radio maps have. An empty file counts as one: nothing in it is lost.
+    """
+    if not path.is_file():
+        return False
+    try:
+        with h5py.File(path) as file:
+            return file.attrs.get("format") == FORMAT
+    except (OSError, RuntimeError, KeyError):
+        content = path.read_bytes()
+    if not content:
+        return True
+    return content.startswith(_HDF5_SIGNATURE) and any(mark in content for mark in _MARKS)
+
+
+def _damaged(path: Path, problem: str) -> MapFileError:
+    return MapFileError(f"{path}: {problem}; compute the map again", "damaged-map", path)
+
+
+def _read(file: h5py.File, path: Path) -> dict[str, Any]:
     attributes: dict[str, Any] = dict(file.attrs)
-    if attributes.get("format") != FORMAT:
-        raise MapFileError(
-            f"{path}: an HDF5 file, but not a radio map (attribute format = "
-            f"{attributes.get('format')!r}, expected {FORMAT!r})"
-        )
-    if attributes["format_version"] != FORMAT_VERSION:
-        raise MapFileError(
-            f"{path}: format_version = {attributes['format_version']}, this program reads "
-            f"{FORMAT_VERSION}; make the map anew"
-        )
+    _check_format(attributes, path)
     required = [name for name, layer in LAYERS.items() if layer.required]
     missing = [name for name in ("x", "y", *required) if name not in file]
     if missing:
-        raise MapFileError(f"{path}: dataset {missing[0]!r} is missing; make the map anew")
+        raise _damaged(path, f"dataset {missing[0]!r} is missing")
     grid = Grid(
         _array(file, "x"),
         _array(file, "y"),
         float(attributes["receiver_height_m"]),
         float(attributes["cell_size_m"]),
     )
+    prefix = "made_with_"
+    return {
+        **_layers(file, grid, path),
+        "grid": grid,
+        "transmitter": _transmitter(file, attributes),
+        "config": _config(attributes),
+        "plan_text": str(attributes["plan_text"]),
+        "plan_sha256": str(attributes["plan_sha256"]),
+        "provenance": {
+            k.removeprefix(prefix): _plain(v) for k, v in attributes.items() if k.startswith(prefix)
+        },
+    }
+
+
+def _check_format(attributes: dict[str, Any], path: Path) -> None:
+    if attributes.get("format") != FORMAT:
+        raise MapFileError(
+            f"{path}: an HDF5 file, but not a radio map (attribute format = "
+            f"{attributes.get('format')!r}, expected {FORMAT!r})",
+            path=path,
+        )
+    if attributes["format_version"] != FORMAT_VERSION:
+        raise _damaged(
+            path,
+            f"format_version = {attributes['format_version']}, expected {FORMAT_VERSION}",
+        )
+
+
+def _layers(file: h5py.File, grid: Grid, path: Path) -> dict[str, NDArray[Any]]:
+    """Read the layers that the file has; refuse any of another shape, or with NaN."""
     layers = {name: _array(file, name) for name in LAYERS if name in file}
     for name, layer in layers.items():
         if layer.shape != grid.shape or np.isnan(layer).any():
-            raise MapFileError(
-                f"{path}: dataset {name!r} has shape {layer.shape}, expected {grid.shape} "
-                "without NaN; make the map anew"
+            raise _damaged(
+                path,
+                f"dataset {name!r} has shape {layer.shape}, expected {grid.shape} without NaN",
             )
-    prefix = "made_with_"
-    return RadioMap(
-        **layers,
-        grid=grid,
-        transmitter=_transmitter(file, attributes),
-        config=_config(attributes),
-        plan_text=str(attributes["plan_text"]),
-        plan_sha256=str(attributes["plan_sha256"]),
-        provenance={
-            k.removeprefix(prefix): _plain(v) for k, v in attributes.items() if k.startswith(prefix)
-        },
-    )
+    return layers
 
 
 def _array(file: h5py.File, name: str) -> NDArray[Any]:

@@ -4,43 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from raytrace.config import TraceConfig
 from raytrace.extras import needs_extra
-from raytrace.grid import Grid, TraceConfig
+from raytrace.grid import Grid
 from raytrace.radio.transmitter import Transmitter
+from raytrace.results.layers import LAYERS
+from raytrace.results.map_file import attributes_of, read_map_file, write_map_file
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-
-
-class LayerInfo(NamedTuple):
-    """What a layer of a map is: its unit, its name in words, and whether every map has it."""
-
-    units: str
-    long_name: str
-    required: bool = False
-
-
-LAYERS: dict[str, LayerInfo] = {
-    "rss_dbm": LayerInfo("dBm", "received signal strength, sum of the paths' powers", True),
-    "rss_coherent_dbm": LayerInfo(
-        "dBm", "received signal strength, power of the sum of the paths' fields", True
-    ),
-    "path_count": LayerInfo("1", "number of paths", True),
-    "strongest_path_dbm": LayerInfo("dBm", "power of the strongest path"),
-    "mean_delay_s": LayerInfo("s", "mean delay, weighted with power"),
-    "delay_spread_s": LayerInfo("s", "RMS delay spread, weighted with power"),
-    "angular_spread": LayerInfo("1", "azimuth spread of arrival after Fleury, 0 to 1"),
-    "k_factor_db": LayerInfo("dB", "power of the strongest path over that of all others"),
-    "left_out_db": LayerInfo("dB", "bound on the level of what was left out over the RSS"),
-}
-"""The fields of a `RadioMap` that hold a value a cell, in the order they are stored in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +93,6 @@ class RadioMap:
         """
         with needs_extra("data"):
             import xarray as xr
-        from raytrace.results.map_file import attributes_of
 
         centre = "{} of the cell centres"
         coords = {
@@ -131,13 +109,9 @@ class RadioMap:
 
     def save(self, path: str | Path) -> None:
         """Write to HDF5, whole or not at all (see `raytrace.results.map_file`)."""
-        from raytrace.results.map_file import save_radio_map
-
-        save_radio_map(self, Path(path))
+        write_map_file(self, Path(path))
 
     @classmethod
     def load(cls, path: str | Path) -> RadioMap:
-        """Read from HDF5; raise `MapFileError` where the file is not a whole map."""
-        from raytrace.results.map_file import load_radio_map
-
-        return load_radio_map(Path(path))
+        """Read from HDF5; `raytrace.results.map_file.read_map_file` lists the errors."""
+        return cls(**read_map_file(Path(path)))

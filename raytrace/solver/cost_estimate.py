@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.grid import Grid, TraceConfig
+from raytrace.config import TraceConfig
+from raytrace.grid import Grid
 from raytrace.kernels.tracing import Sums, new_sums
 from raytrace.radio.transmitter import Transmitter
 from raytrace.scene import Scene

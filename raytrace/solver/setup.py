@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from raytrace.config import TraceConfig
 from raytrace.errors import SceneError
 from raytrace.geometry.point_location import bounces_needed, cells_around, targets_in, wall_around
-from raytrace.grid import TraceConfig
 from raytrace.kernels.beams import Hits, Targets, Tree, grow_tree, hit_corners, hit_partial_walls
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.tracing import Trace

@@ -15,8 +15,8 @@ from rssnav.cli.failures import (
     INTERRUPTED,
     NOTHING_HALF,
     complain,
-    describe,
     is_anticipated,
+    with_hint,
 )
 
 
@@ -112,5 +112,5 @@ class Commands(TyperGroup):
         except Exception as error:
             if not is_anticipated(error):
                 raise
-            complain(describe(error))
+            complain(with_hint(error))
             raise typer.Exit(COULD_NOT) from error

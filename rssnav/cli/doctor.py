@@ -18,7 +18,8 @@ from rssnav.cli.console import note, print_json, print_pairs
 from rssnav.cli.failures import COULD_NOT, complain
 from rssnav.cli.options import Json, examples
 from rssnav.kernel_cache import KernelCache, learning_cache, tracer_cache
-from rssnav.maps import make_map, scene_of
+from rssnav.maps import make_map
+from rssnav.scenes import scene_of
 
 LIBRARIES = ("numpy", "numba", "scipy", "shapely", "trimesh", "h5py", "matplotlib", "typer")
 BOX = """

@@ -27,7 +27,8 @@ from rssnav.cli.options import (
     examples,
 )
 from rssnav.kernel_cache import tracer_cache
-from rssnav.maps import FREQUENCY_HZ, HEIGHT_M, POWER_DBM, scene_of
+from rssnav.maps import FREQUENCY_HZ, HEIGHT_M, POWER_DBM
+from rssnav.scenes import scene_of
 
 Position = tuple[float, float, float]
 

@@ -22,8 +22,8 @@ from floorplans.unchecked import PlanFile
 from rssnav.cli.console import note, print_json, print_table
 from rssnav.cli.options import Json, Plan, check_suffix, examples
 from rssnav.cli.plan_facts import facts_of, print_facts
-from rssnav.maps import scene_of
 from rssnav.reachability import Reach, reaches, unreached
+from rssnav.scenes import scene_of
 
 
 def add_to(parent: typer.Typer) -> None:

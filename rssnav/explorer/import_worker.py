@@ -8,7 +8,7 @@ from pathlib import Path
 
 from floorplans import PlanError
 from floorplans.importers import import_plan
-from rssnav.cli.failures import describe
+from rssnav.messages import describe
 
 
 def main(file: str, plan: str, n_bytes: str) -> int:

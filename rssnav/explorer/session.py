@@ -11,7 +11,14 @@ from floorplans import FloorPlan, PlanError
 from raytrace import Grid, RadioMap
 from rssnav.explorer.background import NewestOnly, Ticket
 from rssnav.explorer.limits import Limits
-from rssnav.explorer.tracing import MapCache, MapSettings, MapTracer, PathFinder, TracedMap
+from rssnav.explorer.tracing import (
+    LatestScene,
+    MapCache,
+    MapSettings,
+    MapTracer,
+    PathFinder,
+    TracedMap,
+)
 from rssnav.explorer.training import LiveTraining, TrainingSettings
 from rssnav.explorer.uploads import read_upload
 
@@ -54,8 +61,9 @@ class Session:
     ) -> None:
         self.limits = limits or Limits()
         self.settings = MapSettings()
-        self.maps = MapTracer(self.limits, cache or MapCache())
-        self.paths = PathFinder()
+        scenes = LatestScene()
+        self.maps = MapTracer(self.limits, cache or MapCache(), scenes)
+        self.paths = PathFinder(scenes)
         self.training: LiveTraining | None = None
         self.cell: tuple[int, int] | None = None
         self.problem = ""

@@ -25,7 +25,8 @@ from raytrace import (
 )
 from rssnav.explorer.background import NewestOnly, Ticket
 from rssnav.explorer.limits import Limits
-from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM, scene_of
+from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM
+from rssnav.scenes import PlanScene
 
 Position = tuple[float, float, float]
 
@@ -142,6 +143,21 @@ class MapCache:
                 self._maps.popitem(last=False)
 
 
+class LatestScene:
+    """The scene of a session's newest building, built when a thread first needs it."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._built: PlanScene | None = None
+
+    def of(self, plan: FloorPlan) -> Scene:
+        """Return a plan's scene; another source or start leaves it as it is."""
+        with self._lock:
+            if self._built is None or not self._built.fits(plan):
+                self._built = PlanScene.of(plan)
+            return self._built.scene
+
+
 class MapTracer:
     """Traces the newest map asked for: reflections at once, then everything.
 
@@ -155,14 +171,14 @@ class MapTracer:
         Why the newest request failed; empty if it did not.
     """
 
-    def __init__(self, limits: Limits, cache: MapCache) -> None:
+    def __init__(self, limits: Limits, cache: MapCache, scenes: LatestScene) -> None:
         self.latest: TracedMap | None = None
         self.progress: float | None = None
         self.problem = ""
         self._limits = limits
         self._cache = cache
+        self._scenes = scenes
         self._thread = NewestOnly("map")
-        self._built: tuple[FloorPlan, Scene] | None = None
 
     def request(self, plan: FloorPlan, settings: MapSettings) -> None:
         """Trace a map in place of the one being traced."""
@@ -212,7 +228,7 @@ class MapTracer:
         grid = settings.grid(plan)
         self._limits.check_grid(plan, grid)
         radio_map = compute_radio_map(
-            self._scene(plan),
+            self._scenes.of(plan),
             settings.transmitter(plan),
             grid,
             TraceConfig(settings.max_reflections, int(complete)),
@@ -239,12 +255,6 @@ class MapTracer:
         ticket.check()
         self.latest, self.problem = traced, ""
 
-    def _scene(self, plan: FloorPlan) -> Scene:
-        """Scene of a plan; moving source or start leaves the walls, and so the scene, as it is."""
-        if self._built is None or self._built[0].walls is not plan.walls:
-            self._built = (plan, scene_of(plan))
-        return self._built[1]
-
 
 class PathFinder:
     """Traces the paths to the newest cell asked for.
@@ -259,10 +269,11 @@ class PathFinder:
         Why the newest request failed; empty if it did not.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, scenes: LatestScene) -> None:
         self.latest: CellPaths | None = None
         self.busy = False
         self.problem = ""
+        self._scenes = scenes
         self._thread = NewestOnly("paths")
 
     def request(self, plan: FloorPlan, settings: MapSettings, receiver: Position) -> None:
@@ -285,7 +296,7 @@ class PathFinder:
         found, problem = None, ""
         try:
             paths = trace_paths(
-                scene_of(plan),
+                self._scenes.of(plan),
                 settings.transmitter(plan),
                 np.array([receiver]),
                 TraceConfig(settings.max_reflections),

@@ -5,7 +5,8 @@ import pytest
 import floorplans
 from raytrace import CostEstimate, Grid, TraceConfig, Transmitter
 from rssnav import cost_notice
-from rssnav.maps import make_map, scene_of
+from rssnav.maps import make_map
+from rssnav.scenes import scene_of
 
 
 def test_a_quick_map_is_not_announced() -> None:

@@ -15,7 +15,8 @@ from shapely.geometry import Polygon
 import floorplans
 from floorplans import FloorPlan, Wall
 from raytrace import TraceConfig
-from rssnav.maps import make_map, scene_of
+from rssnav.maps import make_map
+from rssnav.scenes import scene_of
 
 
 def ring(corners, material: str = "brick"):

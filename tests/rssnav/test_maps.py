@@ -11,7 +11,8 @@ from cli_plans import ROOM, edited
 
 import floorplans
 from raytrace import MapFileError, RadioMap, SceneError, TraceConfig
-from rssnav.maps import make_map, require_map_for, scene_of
+from rssnav.maps import make_map, require_map_for
+from rssnav.scenes import scene_of
 
 QUICK = TraceConfig(max_reflections=1, max_diffractions=0)
 
@@ -83,7 +84,7 @@ def test_changed_request_makes_the_map_again(plan, made, options, reason) -> Non
     watch = Watch()
     radio_map = watch.make(plan, made, **options)
     assert watch.parts[-1][0] == watch.parts[-1][1]
-    assert watch.notices == [f"{made} was made {reason}; making it again"]
+    assert watch.notices == [f"{made} was made {reason}; computing it again"]
     assert np.array_equal(RadioMap.load(made).rss_dbm, radio_map.rss_dbm)
     assert Watch().make(plan, made, **options).provenance == radio_map.provenance
 
@@ -104,7 +105,7 @@ def test_map_of_another_tracer_is_made_again(plan, made, key) -> None:
     watch = Watch()
     watch.make(plan, made)
     assert watch.notices == [
-        f"{made} was made with another {key.replace('_', ' ')}; making it again"
+        f"{made} was made with another {key.replace('_', ' ')}; computing it again"
     ]
     assert RadioMap.load(made).provenance[key] != "earlier"
 
@@ -114,7 +115,7 @@ def test_map_of_another_format_version_is_made_again(plan, made) -> None:
         file.attrs["format_version"] = 0
     watch = Watch()
     watch.make(plan, made)
-    assert watch.notices == [f"{made} is damaged or of another version; making it again"]
+    assert watch.notices == [f"{made} is damaged or of another version; computing it again"]
     assert RadioMap.load(made).plan_sha256 == plan.sha256
 
 
@@ -123,7 +124,7 @@ def test_truncated_map_is_made_again(plan, made, length) -> None:
     made.write_bytes(made.read_bytes()[:length])
     watch = Watch()
     watch.make(plan, made)
-    assert watch.notices == [f"{made} is damaged or of another version; making it again"]
+    assert watch.notices == [f"{made} is damaged or of another version; computing it again"]
     assert RadioMap.load(made).plan_sha256 == plan.sha256
 
 
@@ -146,7 +147,7 @@ def test_file_that_is_no_map_is_replaced_only_by_force(plan, tmp_path, write) ->
     path, watch = tmp_path / "data.h5", Watch()
     write(path)
     before = path.read_bytes()
-    with pytest.raises(MapFileError, match=r"data\.h5: there is a file that is not .*--force"):
+    with pytest.raises(MapFileError, match=r"data\.h5: there is a file that is not .*force=True"):
         watch.make(plan, path)
     assert path.read_bytes() == before
     assert watch.parts == []
@@ -181,7 +182,7 @@ def test_map_of_another_plan_is_refused(plan, made) -> None:
     radio_map = RadioMap.load(made)
     require_map_for(plan, radio_map)
     other = replace(plan, height_m=3.0, name="other room")
-    with pytest.raises(MapFileError, match=r"room\.h5: .*another plan.*'other room'.*make it"):
+    with pytest.raises(MapFileError, match=r"room\.h5: .*another plan.*'other room'.*compute it"):
         require_map_for(other, radio_map, made)
     unmarked = radio_map.with_plan("", "")
     with pytest.raises(MapFileError, match="plan_sha256 = none"):

@@ -11,7 +11,8 @@ from floorplans import MaterialLayer, PlanMaterial
 from raytrace import SceneError, TraceConfig
 from raytrace.radio.itu import TABLES
 from raytrace.radio.materials import MATERIAL_NAMES, Dielectric, Layer, Layered
-from rssnav.maps import make_map, scene_of
+from rssnav.maps import make_map
+from rssnav.scenes import scene_of
 
 BOARD = PlanMaterial("board", 2.1, c=0.01, d=0.5)
 STUDS = PlanMaterial(
@@ -54,7 +55,7 @@ def test_a_map_of_another_edition_is_made_again(tmp_path) -> None:
     one = TraceConfig(max_reflections=1, max_diffractions=0)
     new = make_map(ROOM, file, config=one)
     old = make_map(ROOM, file, config=one, edition="P.2040-1", notice=told.append)
-    assert told == [f"{file} was made with another material edition; making it again"]
+    assert told == [f"{file} was made with another material edition; computing it again"]
     assert old.provenance["material_edition"] == "P.2040-1"
     lit = np.isfinite(new.rss_dbm)
     assert 0.01 < np.abs(new.rss_dbm[lit] - old.rss_dbm[lit]).max() < 3.0

@@ -20,9 +20,9 @@ from raytrace import (
     TraceConfig,
     Transmitter,
 )
-from raytrace.results import radio_map
+from raytrace.results.layers import LAYERS
 
-LAYERS = ("rss_dbm", "rss_coherent_dbm", "path_count")
+REQUIRED = ("rss_dbm", "rss_coherent_dbm", "path_count")
 
 
 def small_map() -> RadioMap:
@@ -63,7 +63,7 @@ def test_a_map_comes_back_as_it_was(tmp_path: Path, antenna: Antenna) -> None:
     first = replace(first, transmitter=replace(first.transmitter, antenna=antenna))
     first.save(tmp_path / "map.h5")
     second = RadioMap.load(tmp_path / "map.h5")
-    for layer in LAYERS:
+    for layer in REQUIRED:
         np.testing.assert_array_equal(getattr(first, layer), getattr(second, layer))
         assert getattr(first, layer).dtype == getattr(second, layer).dtype
     np.testing.assert_array_equal(first.grid.x, second.grid.x)
@@ -77,7 +77,7 @@ def test_a_map_comes_back_as_it_was(tmp_path: Path, antenna: Antenna) -> None:
 def test_plain_hdf5_shows_units_names_and_coordinates(saved: Path) -> None:
     first = small_map()
     with h5py.File(saved) as file:
-        for layer in LAYERS:
+        for layer in REQUIRED:
             assert file[layer].attrs["units"] == ("1" if layer == "path_count" else "dBm")
             assert file[layer].attrs["long_name"]
             for axis, name in enumerate(("y", "x")):
@@ -96,23 +96,23 @@ def full_map() -> RadioMap:
     """A map with every layer there is."""
     first = small_map()
     rng = np.random.default_rng(52)
-    optional = [name for name, layer in radio_map.LAYERS.items() if not layer.required]
+    optional = [name for name, layer in LAYERS.items() if not layer.required]
     return replace(first, **{name: rng.uniform(0.0, 1.0, first.grid.shape) for name in optional})
 
 
 def test_optional_layers_come_back_and_others_stay_none(tmp_path: Path) -> None:
     first = full_map()
-    assert list(first.layers) == list(radio_map.LAYERS)
+    assert list(first.layers) == list(LAYERS)
     first.save(tmp_path / "map.h5")
     second = RadioMap.load(tmp_path / "map.h5")
     for name, layer in first.layers.items():
         np.testing.assert_array_equal(layer, second.layers[name])
     assert small_map().delay_spread_s is None
-    assert list(small_map().layers) == list(LAYERS)
+    assert list(small_map().layers) == list(REQUIRED)
 
 
 def test_every_layer_is_a_field_of_the_map() -> None:
-    assert set(radio_map.LAYERS) <= {field.name for field in fields(RadioMap)}
+    assert set(LAYERS) <= {field.name for field in fields(RadioMap)}
 
 
 def test_xarray_opens_the_file_with_coordinates_and_units(tmp_path: Path) -> None:
@@ -130,7 +130,7 @@ def test_data_set_is_the_file_as_xarray_reads_it(saved: Path) -> None:
     mine = RadioMap.load(saved).to_xarray()
     assert float(mine["z"]) == 2.0
     with xr.open_dataset(saved, engine="h5netcdf") as data:
-        for name in (*LAYERS, "x", "y"):
+        for name in (*REQUIRED, "x", "y"):
             xr.testing.assert_equal(data[name], mine[name].drop_vars("z", errors="ignore"))
             assert data[name].attrs == mine[name].attrs
         assert set(data.attrs) == set(mine.attrs)
@@ -146,7 +146,7 @@ def test_a_file_of_before_the_optional_layers_and_axes_is_read(saved: Path) -> N
 def test_a_truncated_file_is_refused(saved: Path, share: float) -> None:
     content = saved.read_bytes()
     saved.write_bytes(content[: int(share * len(content))])
-    with pytest.raises(MapFileError, match=r"map\.h5.*anew"):
+    with pytest.raises(MapFileError, match=r"map\.h5.*again"):
         RadioMap.load(saved)
 
 
@@ -170,15 +170,15 @@ def test_hdf5_of_another_kind_is_refused(tmp_path: Path) -> None:
 def test_another_version_is_refused(saved: Path, version: int | str) -> None:
     with h5py.File(saved, "r+") as file:
         file.attrs["format_version"] = version
-    with pytest.raises(MapFileError, match=rf"map\.h5.*{version}.*anew"):
+    with pytest.raises(MapFileError, match=rf"map\.h5.*{version}.*again"):
         RadioMap.load(saved)
 
 
-@pytest.mark.parametrize("name", [*LAYERS, "x", "y"])
+@pytest.mark.parametrize("name", [*REQUIRED, "x", "y"])
 def test_a_missing_dataset_is_named(saved: Path, name: str) -> None:
     with h5py.File(saved, "r+") as file:
         del file[name]
-    with pytest.raises(MapFileError, match=rf"map\.h5.*{name}.*anew"):
+    with pytest.raises(MapFileError, match=rf"map\.h5.*{name}.*again"):
         RadioMap.load(saved)
 
 
@@ -186,7 +186,7 @@ def test_a_missing_dataset_is_named(saved: Path, name: str) -> None:
 def test_a_missing_attribute_is_named(saved: Path, name: str) -> None:
     with h5py.File(saved, "r+") as file:
         del file.attrs[name]
-    with pytest.raises(MapFileError, match=rf"map\.h5.*{name}.*anew"):
+    with pytest.raises(MapFileError, match=rf"map\.h5.*{name}.*again"):
         RadioMap.load(saved)
 
 

@@ -124,7 +124,7 @@ def test_truncated_map(made, tmp_path, share) -> None:
     cut.write_bytes(whole[: int(share * len(whole))])
     line = fault("train", plan, "--map", cut)
     assert line.startswith(f"rssnav: {cut}: ")
-    assert "make it anew" in line
+    assert f"compute the map again; `rssnav map PLAN -o {cut}`" in line
 
 
 def test_map_that_is_a_text_file(made, tmp_path) -> None:
@@ -148,7 +148,7 @@ def test_map_of_another_version(made, tmp_path) -> None:
     with h5py.File(old, "r+") as file:
         file.attrs["format_version"] = 0
     line = fault("train", plan, "--map", old)
-    assert f"{old}: format_version = 0, this program reads 1; make the map anew" in line
+    assert f"{old}: format_version = 0, expected 1; compute the map again" in line
 
 
 def test_map_of_another_plan(made, tmp_path) -> None:

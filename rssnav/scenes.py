@@ -1,0 +1,90 @@
+"""Floor plan -> scene: the tracer's view of a building, for any transmitter in it."""
+
+from dataclasses import dataclass
+
+from floorplans import FloorPlan, PlanMaterial
+from raytrace import Dielectric, Layer, Layered, Material, Scene, SceneError
+from raytrace.radio.materials import MATERIAL_EDITION, find_material
+
+_BUILDING = (
+    "outline", "walls", "height_m", "floor_material", "floor_thickness_m",
+    "ceiling_material", "ceiling_thickness_m", "materials",
+)  # fmt: skip
+"""Attributes of a plan that its scene depends on, besides the edition of its materials."""
+
+
+def edition_of(plan: FloorPlan, edition: str | None = None) -> str:
+    """Edition of ITU-R P.2040: the one asked for, or the plan's, or the tracer's default."""
+    return edition or plan.material_edition or MATERIAL_EDITION
+
+
+def scene_of(plan: FloorPlan, edition: str | None = None) -> Scene:
+    """Make a plan's scene.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+    edition : str, optional
+        Of ITU-R P.2040, for the built-in materials; see `edition_of`.
+
+    Raises
+    ------
+    SceneError
+        Where the tracer cannot work with the plan; the message names it.
+    """
+    walls = plan.to_mesh()
+    edition = edition_of(plan, edition)
+    try:
+        own = _own_materials(plan, edition)
+        materials = [(own.get(name, name), thickness_m) for name, thickness_m in walls.materials]
+        return Scene.from_mesh(walls.mesh, walls.face_material, materials, edition=edition)
+    except SceneError as error:
+        raise SceneError(f"plan {plan.name!r}: {error}") from error
+
+
+@dataclass(frozen=True, eq=False)
+class PlanScene:
+    """The scene of a plan's building, for any source and start in it.
+
+    Attributes
+    ----------
+    plan
+        The plan it was built from.
+    scene
+        The building as the tracer sees it.
+    """
+
+    plan: FloorPlan
+    scene: Scene
+
+    @classmethod
+    def of(cls, plan: FloorPlan, edition: str | None = None) -> "PlanScene":
+        """Build a plan's scene; parameters and errors as of `scene_of`."""
+        return cls(plan, scene_of(plan, edition))
+
+    def fits(self, plan: FloorPlan, edition: str | None = None) -> bool:
+        """Return whether a plan has the same building: all but name, source, start and origin."""
+        return edition_of(plan, edition) == self.scene.material_edition and all(
+            getattr(plan, key) == getattr(self.plan, key) for key in _BUILDING
+        )
+
+
+def _own_materials(plan: FloorPlan, edition: str) -> dict[str, Material]:
+    """A plan's own materials as the tracer knows them."""
+    dielectrics = {m.name: _dielectric(m) for m in plan.materials if not m.layers}
+
+    def layer(name: str, thickness_m: float) -> Layer:
+        material = dielectrics.get(name) or find_material(name, edition)
+        assert isinstance(material, Dielectric)
+        return Layer(material, thickness_m)
+
+    layered = {
+        m.name: Layered(m.name, tuple(layer(*of) for of in m.layers))
+        for m in plan.materials
+        if m.layers
+    }
+    return {**dielectrics, **layered}
+
+
+def _dielectric(material: PlanMaterial) -> Dielectric:
+    return Dielectric.of_law(material.name, material.a, material.b, material.c, material.d)
