@@ -1,5 +1,7 @@
 """The one error this package raises for a plan that cannot be used."""
 
+from __future__ import annotations
+
 import json
 from difflib import get_close_matches
 
@@ -8,7 +10,7 @@ Place = tuple[str | int, ...]
 
 
 class PlanError(ValueError):
-    """A floor plan is wrong; the message names the file, the table, the key, the value, the remedy.
+    """A floor plan is wrong; the message names the file, the table, the key and the value.
 
     Parameters
     ----------
@@ -22,6 +24,10 @@ class PlanError(ValueError):
         The file or the text the plan came from.
     at : (float, float) or None
         Where in the building it is wrong, (x, y) [m].
+    remedy : str or None
+        Key of what would help, for programs that offer it in their own words: a field of
+        `floorplans.importers.ImportOptions` to set, or "install_ifc"; None where `problem` says
+        all.
     """
 
     def __init__(
@@ -31,16 +37,35 @@ class PlanError(ValueError):
         value: object = None,
         origin: str = "",
         at: tuple[float, float] | None = None,
+        remedy: str | None = None,
     ) -> None:
         self.problem = problem
         self.place = place
         self.value = value
         self.origin = origin
         self.at = at
+        self.remedy = remedy
         where = format_place(place)
         if value is not None:
             where = f"{where} = {_format_value(value)}"
         super().__init__(": ".join(part for part in (origin, where, problem) if part))
+
+    def located(
+        self,
+        origin: str = "",
+        *,
+        place: Place | None = None,
+        at: tuple[float, float] | None = None,
+    ) -> PlanError:
+        """Return the same error with what a caller knows of where it is; its own origin stays."""
+        return PlanError(
+            self.problem,
+            self.place if place is None else place,
+            self.value,
+            self.origin or origin,
+            at or self.at,
+            self.remedy,
+        )
 
 
 def format_place(place: Place) -> str:

@@ -112,7 +112,7 @@ def loads_unchecked(text: str, *, origin: str = "<text>") -> PlanFile:
     try:
         return _read_unchecked(Table(_parse(text, origin), PLAN_KEYS))
     except PlanError as error:
-        raise PlanError(error.problem, error.place, error.value, origin, error.at) from None
+        raise error.located(origin) from None
 
 
 def _parse(text: str, origin: str) -> dict[str, object]:
@@ -127,7 +127,7 @@ def from_data(data: Mapping[str, object], *, origin: str = "<data>") -> FloorPla
     try:
         return _read_plan(Table(data, PLAN_KEYS))
     except PlanError as error:
-        raise PlanError(error.problem, error.place, error.value, origin, error.at) from None
+        raise error.located(origin) from None
 
 
 def save(plan: FloorPlan, path: str | Path) -> None:
@@ -141,8 +141,7 @@ def _read_plan(table: Table) -> FloorPlan:
     try:
         return FloorPlan.of(unchecked.plan)
     except PlanError as error:
-        place = unchecked.place_in_file(error.place)
-        raise PlanError(error.problem, place, error.value, at=error.at) from None
+        raise error.located(place=unchecked.place_in_file(error.place)) from None
 
 
 def _read_unchecked(table: Table) -> PlanFile:

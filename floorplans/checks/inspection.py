@@ -95,7 +95,7 @@ def inspect(file: PlanFile) -> tuple[Finding, ...]:
 
 def _error(fault: PlanError, file: PlanFile) -> Finding:
     place = file.place_in_file(fault.place)
-    text = str(PlanError(fault.problem, place, fault.value))
+    text = str(fault.located(place=place))
     return Finding("error", str(place[0]) if place else "plan", text, fault.at)
 
 

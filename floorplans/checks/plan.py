@@ -55,7 +55,7 @@ def number_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
     for index, wall in enumerate(plan.walls):
         place: Place = ("walls", index)
         for fault in _caught(partial(check_wall, wall, plan.height_m, plan.own_materials, place)):
-            yield PlanError(fault.problem, fault.place, fault.value, at=_middle(wall))
+            yield fault.located(at=_middle(wall))
     origin = plan.origin
     if origin is not None:
         yield from _caught(lambda: check_origin(origin))

@@ -150,11 +150,15 @@ class RawOpening:
 
 @dataclass(frozen=True)
 class LayerUse:
-    """What became of a layer, class or type of the file: a line of the report."""
+    """What became of a layer, class or type of the file: a line of the report.
+
+    `is_unknown` is true where its name says nothing of walls, doors or windows.
+    """
 
     name: str
     n_objects: int
     became: str
+    is_unknown: bool = False
 
 
 @dataclass(frozen=True)

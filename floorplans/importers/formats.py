@@ -14,7 +14,7 @@ from floorplans.importers.imported import Imported
 from floorplans.plan import FloorPlan
 
 Reader = Callable[[Path, ImportOptions], Draft | FloorPlan]
-"""Gives a whole plan only for a file that holds one, such as one that rssnav exported."""
+"""Returns a whole plan only for a file that holds one, as `floorplans.exporters` writes it."""
 
 _HEAD_BYTES = 4096
 _FOLDER_AS = ".imdf"
@@ -107,9 +107,7 @@ def import_plan(path: str | Path, options: ImportOptions | None = None) -> Impor
             return Imported.whole(drafted, options, path.name)
         return assemble(drafted, options, path.name)
     except PlanError as error:
-        raise PlanError(
-            error.problem, error.place, error.value, error.origin or str(path)
-        ) from error
+        raise error.located(str(path)) from error
 
 
 def read_draft(path: Path, options: ImportOptions) -> Draft | FloorPlan:

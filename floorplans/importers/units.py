@@ -54,6 +54,7 @@ def check_size(size: tuple[float, float], unit: str, said_by: str) -> None:
         f"{_proposal(size, fitting)}",
         ("unit",),
         unit,
+        remedy="unit",
     )
 
 
@@ -83,6 +84,7 @@ def guess_unit(size: tuple[float, float], door_widths: Sequence[float]) -> str:
         f"the drawing does not tell its unit, and {'several' if fitting else 'none'} would make "
         f"it a building; {_proposal(size, fitting)}",
         ("unit",),
+        remedy="unit",
     )
 
 
@@ -93,9 +95,9 @@ def _fits(value: float, span: tuple[float, float]) -> bool:
 def _proposal(size: tuple[float, float], fitting: Sequence[str]) -> str:
     """Say what each unit would make of the drawing."""
     if not fitting:
-        return f"give the unit (--unit {'|'.join(UNITS)})"
-    choices = [f"--unit {unit} for {_size_text(size, unit)}" for unit in fitting]
-    return f"give {' or '.join(choices)}"
+        return f"give the unit, one of {', '.join(UNITS)}"
+    choices = [f"{unit} for {_size_text(size, unit)}" for unit in fitting]
+    return f"give the unit: {' or '.join(choices)}"
 
 
 def _size_text(size: tuple[float, float], unit: str) -> str:

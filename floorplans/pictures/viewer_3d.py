@@ -218,7 +218,7 @@ def _key(scene: trimesh.Scene, title: str) -> str:
 
 
 def save_scene(
-    scene: trimesh.Scene, path: str | Path, title: str = "rssnav", bar: ColourBar | None = None
+    scene: trimesh.Scene, path: str | Path, title: str | None = None, bar: ColourBar | None = None
 ) -> None:
     """Write a scene to a file.
 
@@ -227,8 +227,8 @@ def save_scene(
     scene : trimesh.Scene
     path : str or Path
         Its suffix names the format: .glb or .html.
-    title : str
-        Of the page.
+    title : str, optional
+        Of the page; by default the file's name.
     bar : ColourBar, optional
         What the colours of lines mean, for the page.
 
@@ -241,7 +241,7 @@ def save_scene(
     if path.suffix.lower() == ".glb":
         path.write_bytes(export_glb(scene))
     elif path.suffix.lower() == ".html":
-        path.write_text(scene_html(scene, title, bar), encoding="utf-8", newline="\n")
+        path.write_text(scene_html(scene, title or path.stem, bar), encoding="utf-8", newline="\n")
     else:
         raise ValueError(f"{path}: expected a name that ends in .glb or .html")
 

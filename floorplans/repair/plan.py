@@ -24,7 +24,7 @@ class Mended:
 
     def toml(self) -> str:
         """Text of the plan's file; it begins with a note of what was changed."""
-        note = ["# Mended by `rssnav plan check --fix`:", *(f"#   {c}" for c in self.changes)]
+        note = ["# Repaired:", *(f"#   {c}" for c in self.changes)]
         return "\n".join(note) + "\n\n" + dumps(self.plan)
 
 

@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from atomicfiles import atomic_write
-from floorplans import FloorPlan, PlanError
+from floorplans import FloorPlan
 from floorplans.checks.inspection import Finding, inspect
 from floorplans.checks.plan import faults, number_faults
 from floorplans.loading import builtin_names, loads_unchecked, read_text
@@ -131,8 +131,7 @@ def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool)
 def _fail(file: PlanFile, origin: str) -> NoReturn:
     """Raise the first fault, as reading the plan for any other purpose does."""
     first = next(faults(file.plan))
-    place = file.place_in_file(first.place)
-    raise PlanError(first.problem, place, first.value, origin, first.at)
+    raise first.located(origin, place=file.place_in_file(first.place))
 
 
 def _but(n_warnings: int) -> str:

@@ -34,9 +34,12 @@ class Layers:
     def uses(self) -> tuple[LayerUse, ...]:
         """What became of each layer."""
         return tuple(
-            LayerUse(name, self.content.n_objects[name], self._became(name))
+            LayerUse(name, self.content.n_objects[name], self._became(name), self._is_unknown(name))
             for name in sorted(self.meanings, key=str.casefold)
         )
+
+    def _is_unknown(self, name: str) -> bool:
+        return self.meanings[name].kind is None
 
     def _became(self, name: str) -> str:
         meaning = self.meanings[name]
@@ -74,7 +77,7 @@ def layers_of(content: Content, given: Mapping[str, str]) -> Layers:
         if name in content.hidden and name not in given:
             meanings[name], why[name] = Meaning("ignore"), "off or frozen in the drawing"
         elif meanings[name].kind is None:
-            why[name] = f"unknown name; --layer '{name}=wall' takes it in"
+            why[name] = "unknown name"
     layers = Layers(meanings, content, why)
     if not layers.of("wall"):
         unknown = {n for n, m in meanings.items() if m.kind is None and content.curves.get(n)}
@@ -90,6 +93,7 @@ def _no_walls(content: Content) -> PlanError:
         return PlanError("the drawing is empty: nothing is in its model space")
     names = ", ".join(f"{name!r}" for name in sorted(content.n_objects)[:20])
     return PlanError(
-        "no lines of walls were found; tell which layers hold them, such as --layer NAME=wall; "
-        f"layers with objects: {names}"
+        "no lines of walls were found; say which layers hold them, such as NAME=wall; "
+        f"layers with objects: {names}",
+        remedy="layers",
     )

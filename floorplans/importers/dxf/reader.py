@@ -222,7 +222,8 @@ def _check_number(curves: Mapping[Material, Sequence[Curve]]) -> None:
     if n_lines > MAX_LINES:
         raise PlanError(
             f"the layers of walls hold {n_lines} lines, more than the {MAX_LINES} of a single "
-            "storey; leave layers out with --layer NAME=ignore, or save one storey"
+            "storey; leave layers out, such as NAME=ignore, or save one storey",
+            remedy="layers",
         )
 
 

@@ -102,9 +102,10 @@ def _check_degrees(degrees: Sequence[BaseGeometry]) -> None:
     if size.max() > MAX_SIZE_M:
         raise PlanError(
             f"the features span {_shown(size)}, taken as longitude and latitude; a building spans "
-            f"at most {MAX_SIZE_M / 1000:g} km: if coordinates are metres, say --unit m, else cut "
-            "out one building",
+            f"at most {MAX_SIZE_M / 1000:g} km: if coordinates are metres, give the unit m, "
+            "otherwise cut out one building",
             ("unit",),
+            remedy="unit",
         )
 
 

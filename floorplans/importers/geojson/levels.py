@@ -40,7 +40,7 @@ def on_level(features: Sequence[Json], level: str | None) -> list[bool]:
     if not chosen:
         shown = ", ".join(_shown(key, names[key]) for key in used) or "none"
         problem = "there are several levels" if level is None else "there is no such level"
-        raise PlanError(f"{problem}; choose one of: {shown}", ("level",), level)
+        raise PlanError(f"{problem}; choose one of: {shown}", ("level",), level, remedy="level")
     if len(chosen) > 1:
         raise PlanError(f"several levels are called this: {', '.join(chosen)}", ("level",), level)
     return [not levels_of(feature) or bool(levels_of(feature) & chosen) for feature in features]

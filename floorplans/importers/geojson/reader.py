@@ -53,7 +53,7 @@ def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
     tolerance_m = options.tolerance_m or TOLERANCE_M
     walls = walls_of(placed, tolerance_m)
     if not walls:
-        raise PlanError(_nothing_found(classes))
+        raise PlanError(_nothing_found(classes), remedy="layers")
     return Draft(
         name=path.stem,
         walls=tuple(walls),
@@ -70,7 +70,7 @@ def _placed(
     """Return the features of one level that are of use, in metres, and where (0, 0) is."""
     used = [i for i, what in enumerate(classes) if what.kind in _USED]
     if not used:
-        raise PlanError(_nothing_found(classes))
+        raise PlanError(_nothing_found(classes), remedy="layers")
     levels = [i for i, what in enumerate(classes) if what.kind == "level"]
     here = on_level([collection.features[i] for i in [*used, *levels]], options.level)
     used = [i for i, is_here in zip(used, here, strict=False) if is_here]
@@ -92,7 +92,7 @@ def _nothing_found(classes: Sequence[FeatureClass]) -> str:
     shown = ", ".join(f"{label} ({n})" for label, n in labels.most_common(12))
     return (
         f"no wall and no room was recognised among the features, which are called: {shown}; say "
-        "which are walls, such as --layer NAME=wall"
+        "which are walls, such as NAME=wall"
     )
 
 
@@ -101,7 +101,7 @@ def _uses(placed: Sequence[Placed], classes: Sequence[FeatureClass]) -> list[Lay
     total = Counter((what.label, what.kind) for what in classes)
     here = Counter((p.what.label, p.what.kind) for p in placed)
     return [
-        LayerUse(label, n, _became(kind, here[label, kind], n))
+        LayerUse(label, n, _became(kind, here[label, kind], n), is_unknown=kind is None)
         for (label, kind), n in sorted(total.items(), key=lambda item: item[0][0])
     ]
 

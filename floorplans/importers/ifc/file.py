@@ -44,7 +44,7 @@ def open_model(path: Path) -> Model:
     try:
         import ifcopenshell
     except ImportError as error:
-        raise PlanError('IFC files need a library: pip install "rssnav[ifc]"') from error
+        raise PlanError("IFC files need the library ifcopenshell", remedy="install_ifc") from error
     size = path.stat().st_size
     if size > MAX_BYTES:
         raise PlanError(
@@ -72,7 +72,9 @@ def scale_of(model: Model, options: ImportOptions) -> Scale:
     units = [unit for them in model.by_type("IfcUnitAssignment") for unit in them.Units]
     if not any(getattr(unit, "UnitType", None) == "LENGTHUNIT" for unit in units):
         raise PlanError(
-            "the model does not tell its unit of length; give it (--unit mm|cm|m|in|ft)", ("unit",)
+            "the model does not state its unit of length; give it: mm, cm, m, in or ft",
+            ("unit",),
+            remedy="unit",
         )
     return Scale(float(calculate_unit_scale(model)), radian, chord_m)
 
@@ -98,7 +100,7 @@ def storey_of(model: Model, level: str | None, metre: float) -> Storey:
             return with_walls[0]
         if not with_walls:
             raise PlanError(f"no storey of the model has walls; {_listed(storeys)}")
-        raise PlanError(f"choose a storey with --level; {_listed(storeys)}", ("level",))
+        raise PlanError(f"choose a storey; {_listed(storeys)}", ("level",), remedy="level")
     fitting = [storey for k, storey in enumerate(storeys) if _fits(storey, k, level)]
     named = [storey for storey in fitting if storey.name.casefold() == level.casefold()]
     fitting = named or fitting

@@ -3,7 +3,7 @@
 Walls are read from their bodies (the middle of the footprint) and, where they are curved, from
 their axes; their thickness and material from their layers, else from the body. What voids a wall
 is an opening: a door or window where one fills it, else a passage. Slabs and ceilings above tell
-the height. Needs ifcopenshell, the extra ``rssnav[ifc]``.
+the height. Needs ifcopenshell.
 """
 
 from __future__ import annotations
@@ -141,8 +141,9 @@ def _ceiling(slabs: Sequence[tuple[Entity, Body]], floor_m: float) -> float | No
         raise PlanError(
             f"rooms have ceilings at {suspended[0]:.2f} m to {suspended[-1]:.2f} m, and a plan has "
             "one flat ceiling, for the tracer's rays go up and down between two planes; give the "
-            "one that matters (--height)",
+            "one that matters",
             ("height_m",),
+            remedy="height_m",
         )
     return suspended[0] if suspended else min(height for _, height in above)
 

@@ -122,8 +122,9 @@ def _facts_beside(picture: Path, scale_m: float | None) -> tuple[MapFacts, tuple
     if scale_m is None:
         raise PlanError(
             f"the size of a pixel is not known: there is no {beside[0].name} beside the picture; "
-            "give it, such as --scale 0.05 [m]",
+            "give it, such as 0.05 m",
             origin=str(picture),
+            remedy="scale_m",
         )
     return MapFacts(picture.name, scale_m), ()
 
@@ -162,7 +163,7 @@ def _read_facts(path: Path) -> MapFacts:
     try:
         return _facts(cast("Mapping[str, Any]", data))
     except PlanError as error:
-        raise PlanError(error.problem, error.place, error.value, str(path)) from None
+        raise error.located(str(path)) from None
 
 
 def _facts(data: Mapping[str, Any]) -> MapFacts:

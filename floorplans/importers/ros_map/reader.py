@@ -96,9 +96,10 @@ def _check_extent(occupied: Mask, pixel_m: float) -> None:
     if not low_m <= max(width_m, depth_m) <= high_m:
         raise PlanError(
             f"with pixels of {pixel_m:g} m, the walls cover {width_m:.3g} m x {depth_m:.3g} m, "
-            "which is no building; say how large a pixel is, such as --scale 0.05 [m]",
+            "which is no building; give the side of a pixel, such as 0.05 m",
             ("resolution",),
             pixel_m,
+            remedy="scale_m",
         )
 
 

@@ -126,7 +126,7 @@ def test_mended_plan_is_beyond_doubt_and_tells_what_was_done() -> None:
     assert warnings_of(*mended.plan.walls[4:]) == []
     assert len(mended.changes) == 2
     text = mended.toml()
-    assert text.startswith("# Mended by `rssnav plan check --fix`:\n#   (3, 0.03)")
+    assert text.startswith("# Repaired:\n#   (3, 0.03)")
     again = floorplans.loads(text)
     moved = next(w for w in again.walls if w.openings)
     door = moved.point_at(moved.openings[0].offset_m)

@@ -325,7 +325,7 @@ def test_doors_tell_the_unit(size: tuple[float, float], doors: list[float], unit
 
 
 def test_a_unit_that_cannot_be_told_is_asked_for():
-    with pytest.raises(PlanError, match=r"--unit m for 15 m x 9 m or --unit ft for 4\.57 m"):
+    with pytest.raises(PlanError, match=r"give the unit: m for 15 m x 9 m or ft for 4\.57 m"):
         guess_unit((15, 9), [])
     with pytest.raises(PlanError, match="none would make it a building"):
         guess_unit((1e9, 1e9), [])

@@ -111,7 +111,7 @@ def test_a_missing_unit_that_could_be_two_is_asked_for(tmp_path: Path):
     draw.add_rings(doc.modelspace(), draw.bodies(), "wall")
     message = refusal(doc, tmp_path)
     assert "does not tell its unit" in message
-    assert "--unit mm for 8 m x 6 m" in message
+    assert "give the unit: mm for 8 m x 6 m" in message
     assert_size = imported(doc, tmp_path, unit="mm").plan.bounds
     assert assert_size == pytest.approx((0, 0, 7.7, 5.7), abs=0.01)
 
@@ -119,7 +119,7 @@ def test_a_missing_unit_that_could_be_two_is_asked_for(tmp_path: Path):
 def test_a_building_of_kilometres_is_refused_with_the_unit_that_fits(tmp_path: Path):
     message = refusal(draw.flat_of_bodies(6, 1000.0), tmp_path)
     assert "8 km x 6 km" in message
-    assert "--unit mm for 8 m x 6 m" in message
+    assert "give the unit: mm for 8 m x 6 m" in message
 
 
 def test_doors_inside_are_open_and_those_in_the_outline_are_shut(tmp_path: Path):
@@ -196,7 +196,7 @@ def test_furniture_and_text_are_left_out_and_told(tmp_path: Path):
     assert_is_the_flat(result.plan)
     became = {use.name: use.became for use in result.layers}
     assert became["A-FURN"] == "left out"
-    assert "--layer 'misc=wall'" in became["misc"]
+    assert "unknown name" in became["misc"]
     assert became["A-WALL"] == "walls"
     assert became["A-DOOR"] == "2 blocks of doors and windows"
 

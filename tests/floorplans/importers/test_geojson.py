@@ -306,10 +306,10 @@ BAD = {
         ),
         "unknown reference system",
     ),
-    "30 km": (HUGE, r"30 km x 20 km.*--unit mm"),
+    "30 km": (HUGE, r"30 km x 20 km.*give the unit: mm"),
     "metres taken as degrees": (
         collection(feature(box(0, 0, 12, 9), indoor="room")),
-        r"km.*--unit m",
+        r"km.*give the unit m",
     ),
     "nothing of ours": (collection(feature(ROOMS[0], type="sofa")), r"no wall.*sofa \(1\)"),
 }

@@ -136,7 +136,7 @@ def test_upper_storey_is_chosen(tmp_path, level) -> None:
 
 def test_storeys_are_listed_where_one_must_be_chosen(tmp_path) -> None:
     path = two_storeys(tmp_path)
-    assert "choose a storey with --level; there are 0: 'Ground floor' at 0.00 m" in message_of(path)
+    assert "choose a storey; there are 0: 'Ground floor' at 0.00 m" in message_of(path)
     assert "1: 'First floor' at 3.20 m with 4 walls" in message_of(path, level="attic")
     same = two_storeys(tmp_path, "Ground floor")
     assert "2 storeys of that name" in message_of(same, level="Ground floor")
@@ -204,7 +204,7 @@ def test_rooms_with_different_ceilings_are_refused_with_the_reason(tmp_path) -> 
 def test_model_without_unit_needs_one(tmp_path) -> None:
     model = house()
     model.units.Units = ()
-    for wanted in ("does not tell its unit of length", "--unit"):
+    for wanted in ("does not state its unit of length", "give it: mm"):
         assert wanted in message_of(model.write(tmp_path / "house.ifc"))
     plan = import_plan(tmp_path / "house.ifc", ImportOptions(unit="mm")).plan
     assert plan.bounds == pytest.approx((0.0, 0.0, 8.0, 5.0))

@@ -136,7 +136,7 @@ def test_transparent_pixels_are_unknown(tmp_path) -> None:
 
 def test_a_plain_picture_needs_a_scale(tmp_path) -> None:
     Image.fromarray(np.where(room_values() == 0, 0, 255).astype(np.uint8)).save(tmp_path / "a.png")
-    with pytest.raises(PlanError, match=r"no a.yaml beside .*--scale 0.05"):
+    with pytest.raises(PlanError, match=r"no a.yaml beside .*give it, such as 0.05 m"):
         import_plan(tmp_path / "a.png")
     plan = import_plan(tmp_path / "a.png", ImportOptions(scale_m=0.1)).plan
     assert plan.outline.area == pytest.approx(280.0, rel=0.01)
@@ -175,7 +175,7 @@ def test_pictures_elsewhere_are_refused(image: str, tmp_path) -> None:
         ("image: {image}", "image: {{", "not a map's YAML"),
         ("image: {image}", "- 1", "not begin like"),
         ("image: {image}", "image: !!python/object/apply:os.getcwd []", "not a map's YAML"),
-        ("resolution: 0.05", "resolution: 5", "no building.*--scale"),
+        ("resolution: 0.05", "resolution: 5", "no building.*side of a pixel"),
     ],
 )
 def test_yaml_files_that_are_wrong_say_where(old: str, new: str, message: str, tmp_path) -> None:

@@ -69,7 +69,7 @@ def test_fix_mends_in_place_and_keeps_what_was(tmp_path) -> None:
     assert result.stderr.count("mended (3, ") == 2
     assert (tmp_path / "room.toml.bak").read_text() == SHORT
     assert result.stdout.endswith("room.toml is in order\n")
-    assert path.read_text().startswith("# Mended by `rssnav plan check --fix`:")
+    assert path.read_text().startswith("# Repaired:")
     assert floorplans.load(path) == floorplans.load(path)
     again = run("plan", "check", path, "--fix")
     assert "nothing that is safe to mend" in again.stderr

@@ -68,7 +68,8 @@ def test_options_go_into_the_plan(drawing: Path, tmp_path: Path):
 def test_json_tells_everything(drawing: Path, tmp_path: Path):
     told = json.loads(done("plan", "import", drawing, "-o", tmp_path / "h.toml", "--json"))
     assert told["bounds_m"] == [0, 0, 12, 8]
-    assert {"name": "WALLS", "n_objects": 1, "became": "walls"} in told["layers"]
+    layer = {"name": "WALLS", "n_objects": 1, "became": "walls", "is_unknown": False}
+    assert layer in told["layers"]
     assert "height_m" in {assumption["key"] for assumption in told["assumed"]}
     assert told["origin"] == {"x": 0, "y": 0, "frame": "the file, in metres"}
 
@@ -106,7 +107,8 @@ def test_bad_files_end_with_one_line_and_nothing_written(
 def test_a_wrong_unit_is_told_with_the_right_one(drawing: Path, tmp_path: Path):
     line = fault("plan", "import", drawing, "-o", tmp_path / "x.toml", "--unit", "m")
     assert "12 km x 8 km" in line
-    assert "--unit mm for 12 m x 8 m" in line
+    assert "give the unit: mm for 12 m x 8 m" in line
+    assert line.endswith("use --unit UNIT")
 
 
 @pytest.mark.parametrize(
