@@ -3,9 +3,9 @@
     python tests/benchmarks/growth.py --minutes 5
 
 traces generated offices, each map in a process of its own, and writes curves to
-docs/images/growth.png and a table into docs/performance.md. A map whose cost is foretold to be
-over the limit is skipped, and the page says which. Finished maps are kept in
-results/growth.json; another call goes on from there, and --again starts anew.
+docs/images/growth.png and a table into docs/performance.md. A map with a predicted cost
+above the limit is skipped, and the page lists it. Finished maps are kept in
+results/growth.json; the next call resumes from there, and --again starts from the beginning.
 """
 
 import argparse
@@ -84,9 +84,9 @@ def measure(size: Size, limit_s: float) -> dict[str, Any]:
     few = Grid(grid.x[::8], grid.y[::8], HEIGHT_M, size.cell_m)
     compute_radio_map(scene, source, few, TraceConfig(1, 1))
     cost = estimate_cost(scene, source, grid, config)
-    result = {"cells": grid.x.size * grid.y.size, "foretold_s": cost.seconds}
+    result = {"cells": grid.x.size * grid.y.size, "predicted_s": cost.seconds}
     if cost.seconds > limit_s:
-        return {**result, "skipped": True, "foretold_paths": cost.paths}
+        return {**result, "skipped": True, "predicted_paths": cost.paths}
     started = time.perf_counter()
     radio_map = compute_radio_map(scene, source, grid, config)
     seconds = time.perf_counter() - started
@@ -97,7 +97,7 @@ def _measured(paths: int, seconds: float, cost: CostEstimate) -> dict[str, Any]:
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     return {
         "paths": int(paths),
-        "foretold_paths": cost.paths,
+        "predicted_paths": cost.paths,
         "seconds": seconds,
         "peak_bytes": peak,
     }
@@ -112,7 +112,7 @@ def in_own_process(size: Size, limit_s: float) -> dict[str, Any]:
             command, check=True, stdout=subprocess.PIPE, text=True, timeout=most_s
         )
     except subprocess.TimeoutExpired:
-        return {"foretold_s": most_s, "skipped": True}
+        return {"predicted_s": most_s, "skipped": True}
     return json.loads(done.stdout)
 
 
@@ -120,7 +120,7 @@ def run(sizes: Sequence[Size], limit_s: float, finished: Finished) -> None:
     """Measure what is not finished, keeping each result at once."""
     for k, size in enumerate(sizes, 1):
         found = finished.get(size.name)
-        if found and not ("skipped" in found and found["foretold_s"] <= limit_s):
+        if found and not ("skipped" in found and found["predicted_s"] <= limit_s):
             continue
         print(f"{k} of {len(sizes)}: {size.name}", file=sys.stderr)
         finished[size.name] = in_own_process(size, limit_s)
@@ -164,7 +164,7 @@ def draw(finished: Finished) -> None:
 
 def page(finished: Finished, limit_s: float) -> str:
     """Return the part of the page: introduction, picture, table, and what was skipped."""
-    head = ["office", "cell [m]", "cells", "order", "paths", "foretold", "time [s]", "foretold [s]",
+    head = ["office", "cell [m]", "cells", "order", "paths", "predicted", "time [s]", "predicted [s]",
             "peak memory [MB]"]  # fmt: skip
     sizes = list(dict.fromkeys(s for curve in CURVES.values() for s in curve))
     rows, skipped = [], []
@@ -176,7 +176,7 @@ def page(finished: Finished, limit_s: float) -> str:
             continue
         rows.append(
             [office, f"{size.cell_m:g}", f"{found['cells']}", f"{size.order}", f"{found['paths']}",
-             f"{found['foretold_paths']}", f"{found['seconds']:.2g}", f"{found['foretold_s']:.2g}",
+             f"{found['predicted_paths']}", f"{found['seconds']:.2g}", f"{found['predicted_s']:.2g}",
              f"{found['peak_bytes'] / 2**20:.0f}"]
         )  # fmt: skip
     left_out = f" Skipped, at more than {limit_s / 60:g} minutes: {'; '.join(skipped)}."
@@ -185,12 +185,12 @@ def page(finished: Finished, limit_s: float) -> str:
 
 
 INTRODUCTION = """\
-## How it grows
+## Scaling
 
-`make bench-growth` traces offices of 2 to 150 rooms (`floorplans.generate_office`), reflections
-up to the order and one diffraction, on all threads, with compiled kernels. *Foretold* is what
-`raytrace.estimate_cost` said before; peak memory is that of the whole process, Python and
-compiled kernels included.
+`make bench-growth` traces offices of 2 to 150 rooms (`floorplans.generate_office`) with reflections
+up to the given order and one diffraction, on all threads, with compiled kernels. *Predicted* is the
+result of `raytrace.estimate_cost`; peak memory is that of the whole process, including Python and
+compiled kernels.
 
 ![Time and memory over cells, rooms and order](images/growth.png)"""
 

@@ -4,7 +4,7 @@
 
 traces the flat and a small office to receivers drawn at random, path by path, and writes the
 tables into docs/performance.md. rssnav's paths are those of the brute force (tests/reference.py);
-of the others' paths it is told how many of them they found, and how many they found beside. PYTHON
+the tables count how many of them the others find, and how many spurious ones. PYTHON
 has sionna-rt, which needs libLLVM 17 or newer; without it the tables lack Sionna RT.
 """
 
@@ -197,8 +197,8 @@ def main() -> None:
             for case in cases
             for row in rows_of(case, request_for(case, chosen.receivers, folder), commands, folder)
         ]
-    head = ["plan", "tracer", "time [s]", "peak memory [MB]", "found", "missed", "no paths",
-            "twice", "median [dB]", "most [dB]"]  # fmt: skip
+    head = ["plan", "tracer", "time [s]", "peak memory [MB]", "found", "missed", "spurious",
+            "duplicate", "median [dB]", "max [dB]"]  # fmt: skip
     introduction = INTRODUCTION.format(chosen.receivers)
     text = f"{introduction}\n\n{table(head, rows)}\n\nMeasured on: {machine()}."
     write_part("peers", text)
@@ -206,17 +206,17 @@ def main() -> None:
 
 
 INTRODUCTION = """\
-## Beside other tracers
+## Comparison with other tracers
 
-`make bench-peers` traces the flat and an office of two rooms from their source to {} receivers
-drawn at random, up to three reflections, or two and a diffraction, at 2.4 GHz with vertical
-isotropic antennas: with rssnav, with Sionna RT (CPU, a million rays, no transmission) and with
-pyroomacoustics, which knows neither edges nor fields. Each runs twice in a process of its own,
-and the second run is timed. *Found* and *missed* count rssnav's paths, which are those of the
-brute force in `tests/reference.py`; *no paths* are what a tracer gives beside them, *twice* what
-it gives more than once. The last columns compare the gains of found paths with the textbook's
-formulas (slabs, and Kouyoumjian and Pathak's wedge; `tests/reference_field.py`), since Sionna
-RT's diffraction term has a sign turned."""
+`make bench-peers` traces the flat and an office of two rooms from their source to {} random
+receivers, with up to three reflections, or two reflections and a diffraction, at 2.4 GHz with
+vertically polarised isotropic antennas. The tracers are rssnav, Sionna RT (CPU, a million rays, no
+transmission) and pyroomacoustics, which has neither diffraction nor fields. Each runs twice in its
+own process; the second run is timed. *Found* and *missed* count rssnav's paths, which are those of
+the brute force in `tests/reference.py`; *spurious* are paths beyond those, *duplicate* are repeated
+ones. The last columns compare the gains of found paths with the textbook formulas (slabs, and
+Kouyoumjian and Pathak's wedge; `tests/reference_field.py`). Sionna RT's diffraction term has a
+wrong sign."""
 
 
 if __name__ == "__main__":
