@@ -164,8 +164,8 @@ def draw(finished: Finished) -> None:
 
 def page(finished: Finished, limit_s: float) -> str:
     """Return the part of the page: introduction, picture, table, and what was skipped."""
-    head = ["office", "cell [m]", "cells", "order", "paths", "predicted", "time [s]", "predicted [s]",
-            "peak memory [MB]"]  # fmt: skip
+    head = ["office", "cell [m]", "cells", "order", "paths", "predicted", "time [s]",
+            "predicted [s]", "peak memory [MB]"]  # fmt: skip
     sizes = list(dict.fromkeys(s for curve in CURVES.values() for s in curve))
     rows, skipped = [], []
     for size in [size for size in sizes if size.name in finished]:
@@ -176,8 +176,8 @@ def page(finished: Finished, limit_s: float) -> str:
             continue
         rows.append(
             [office, f"{size.cell_m:g}", f"{found['cells']}", f"{size.order}", f"{found['paths']}",
-             f"{found['predicted_paths']}", f"{found['seconds']:.2g}", f"{found['predicted_s']:.2g}",
-             f"{found['peak_bytes'] / 2**20:.0f}"]
+             f"{found['predicted_paths']}", f"{found['seconds']:.2g}",
+             f"{found['predicted_s']:.2g}", f"{found['peak_bytes'] / 2**20:.0f}"]
         )  # fmt: skip
     left_out = f" Skipped, at more than {limit_s / 60:g} minutes: {'; '.join(skipped)}."
     left_out = left_out if skipped else ""
