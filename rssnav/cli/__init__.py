@@ -1,7 +1,7 @@
 """The command line ``rssnav``.
 
-One module a command, listed in `rssnav.cli.commands`. Results go to standard output, progress and
-notes to standard error; exit codes are 0 done, 1 could not be done, 2 wrong usage, 130 interrupted.
+Each command has a module, listed in `rssnav.cli.commands`. Results go to standard output, progress
+and notes to standard error; exit codes are 0 success, 1 failure, 2 wrong usage, 130 interrupted.
 """
 
 from importlib.metadata import version

@@ -1,6 +1,6 @@
 """The table of commands; a command's module is imported when the command is called.
 
-So the list of commands and the shell's completion wait for no library.
+The list of commands and shell completion need no other library, so they are fast.
 """
 
 from importlib import import_module
@@ -26,7 +26,7 @@ class Entry(NamedTuple):
     Attributes
     ----------
     modules
-        Those below `rssnav.cli` whose ``add_to`` adds it to a `typer.Typer`.
+        Modules below `rssnav.cli` whose ``add_to`` adds it to a `typer.Typer`.
     summary
         The first sentence of its help.
     """
@@ -39,27 +39,27 @@ COMMANDS = {
     "plan": Entry(("plan",), "Look at floor plans, check them, export them."),
     "map": Entry(
         ("radio_maps",),
-        "Trace the radio map of a plan: RSS in every cell, from every path of bounded order.",
+        "Trace the radio map of a plan: RSS in every cell, from all paths of bounded order.",
     ),
     "maps": Entry(
         ("radio_maps",),
-        "Make the radio maps of the paper's two scenarios, with a picture each.",
+        "Trace the radio maps of the paper's two scenarios, and draw them.",
     ),
     "paths": Entry(
         ("paths",),
-        "Trace every path from a plan's source to a receiver and print the strongest.",
+        "Trace all paths from a plan's source to a receiver and print the strongest.",
     ),
     "train": Entry(
         ("train",),
-        "Train an agent to fly from a plan's start to its source, many times over.",
+        "Train an agent to fly from a plan's start to its source, in many realisations.",
     ),
     "fly": Entry(
         ("fly",),
-        "Show how a trained UAV flies: its way over the map, and the RSS it reads, step by step.",
+        "Make a film of a trained UAV's flight: its path over the map, and its RSS readings.",
     ),
     "explore": Entry(
         ("explore",),
-        "Open the explorer in the browser: drag the source, see its map, train a UAV.",
+        "Open the explorer in the browser: move the source, see its map, train a UAV.",
     ),
     "experiments": Entry(
         ("experiments",),
@@ -67,37 +67,37 @@ COMMANDS = {
     ),
     "report": Entry(
         ("experiments",),
-        "Make figures, tables and report again from the maps and trainings of an earlier run.",
+        "Recompute figures, tables and report from the maps and trainings of an earlier run.",
     ),
     "doctor": Entry(
         ("doctor",),
-        "Print versions, threads and the state of the compiled kernels, and test the program.",
+        "Print versions, threads and the state of the compiled kernels, and run a self-test.",
     ),
 }
 
 
 def list_in(app: typer.Typer) -> None:
-    """Put every command into an application, by name and summary only."""
+    """Add every command to an application, by name and summary only."""
     for name, entry in COMMANDS.items():
         app.command(name, help=entry.summary)(_unloaded)
 
 
 def _unloaded() -> None:
-    """Stand for a command until `Commands` puts the real one in its place."""
+    """Placeholder of a command until `Commands` loads it."""
 
 
 class Commands(TyperGroup):
-    """A group of commands that end with 0 done, 1 could not be done, 2 wrong usage, 130 Ctrl-C."""
+    """A group of commands, loaded when called; exits with 0, 1, 2, or 130 after Ctrl-C."""
 
     def load(self, name: str) -> None:
-        """Put a real command into its place."""
+        """Replace a command's placeholder by the command."""
         part = typer.Typer()
         for module in COMMANDS[name].modules:
             import_module(f"rssnav.cli.{module}").add_to(part)
         self.commands[name] = get_group(part).commands[name]
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Find the command that is called, and load it."""
+        """Load the command that is called."""
         if args and args[0] in COMMANDS:
             self.load(args[0])
         return super().resolve_command(ctx, args)

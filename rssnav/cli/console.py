@@ -1,4 +1,4 @@
-"""What commands write: tables and JSON on standard output, progress on standard error."""
+"""Output of commands: tables and JSON on standard output, progress on standard error."""
 
 import json
 import math
@@ -22,22 +22,21 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
-StageProgress = Callable[[str, int, int], None]
-"""Called with the name of a stage, and how many of its parts are done of how many."""
+from rssnav.experiments.progress import StageProgress
 
 LINE_EVERY_S = 2.0
 COMPILING = "compiling kernels (first use only)"
 
 
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-    """Print a table; without a terminal as plain text, no cell cut or wrapped.
+    """Print a table; plain text without truncated or wrapped cells if not on a terminal.
 
     Parameters
     ----------
     columns
-        Headings; one that begins with ">" is set to the right, as are its cells.
+        Headings; ">" at the beginning right-aligns a column.
     rows
-        Cells, written with `str`.
+        Cells, converted by `str`.
     """
     cells = [[str(cell) for cell in row] for row in rows]
     console = Console()
@@ -65,7 +64,7 @@ def _rich_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
 
 
 def print_pairs(pairs: Iterable[tuple[str, object]]) -> None:
-    """Print names and values, one pair a line, the values below each other."""
+    """Print names and values, a pair per line, with the values aligned."""
     pairs = list(pairs)
     width = max(len(name) for name, _ in pairs)
     for name, value in pairs:
@@ -73,7 +72,7 @@ def print_pairs(pairs: Iterable[tuple[str, object]]) -> None:
 
 
 def print_json(value: Any) -> None:
-    """Print strict JSON: numbers that are not finite become null."""
+    """Print strict JSON, with non-finite numbers as null."""
     print(json.dumps(_jsonable(value), indent=2, ensure_ascii=False, allow_nan=False))
 
 
@@ -96,12 +95,12 @@ def note(sentence: str) -> None:
 
 @contextmanager
 def stage_progress(compiles: bool = False) -> Generator[StageProgress]:
-    """Show the progress of stages: bars with the time left on a terminal, else a line at times.
+    """Show the progress of stages: bars on a terminal, otherwise a line every few seconds.
 
     Parameters
     ----------
     compiles : bool
-        Whether kernels will have to be compiled before the first stage gets on.
+        Whether kernels must be compiled before the first stage advances.
     """
     console = Console(stderr=True)
     if not console.is_terminal:
@@ -134,7 +133,7 @@ def _bars(console: Console) -> Progress:
 
 
 class _Bars:
-    """A bar for each stage, of unknown length until the stage gets on."""
+    """A bar per stage, of unknown length until the stage advances."""
 
     def __init__(self, progress: Progress, first: str) -> None:
         self._progress = progress
@@ -151,7 +150,7 @@ class _Bars:
 
 
 class _Lines:
-    """A line for a stage every few seconds and at its end, if it took as long."""
+    """A line per stage every few seconds, none for short stages."""
 
     def __init__(self) -> None:
         self._last_s: dict[str, float] = {}

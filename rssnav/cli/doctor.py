@@ -1,4 +1,4 @@
-"""``rssnav doctor``: what is installed, and whether it works."""
+"""``rssnav doctor``: versions of the installation, and a self-test."""
 
 import platform
 import time
@@ -45,7 +45,7 @@ def add_to(parent: typer.Typer) -> None:
 
 
 def examine(as_json: Json = False) -> None:
-    """Print versions, threads and the state of the compiled kernels, and test the program."""
+    """Print versions, threads and the state of the compiled kernels, and run a self-test."""
     caches = {"tracer": tracer_cache(), "learning": learning_cache()}
     if not all(cache.n_compiled for cache in caches.values()):
         note("compiling kernels (first use only)")
@@ -63,16 +63,16 @@ def examine(as_json: Json = False) -> None:
 
 
 def _tracer_faults() -> list[str]:
-    """Trace a box: line of sight as in free space, and six images of the first order."""
+    """Trace a box: line of sight as in free space, and six first-order images."""
     plan = floorplans.loads(BOX)
     x, y, z = plan.source
     receiver = np.array([[x + 4.0, y, z]])
-    source = Transmitter(plan.source)
-    paths = trace_paths(scene_of(plan), source, receiver, TraceConfig(1, 0))
+    transmitter = Transmitter(plan.source)
+    paths = trace_paths(scene_of(plan), transmitter, receiver, TraceConfig(1, 0))
     faults: list[str] = []
     if len(paths) != 7:
         faults.append(f"tracer: {len(paths)} paths in a box, expected 1 + 6 images")
-    free_space = source.wavelength_m / (4.0 * np.pi * 4.0)
+    free_space = transmitter.wavelength_m / (4.0 * np.pi * 4.0)
     error_db = float(20.0 * np.log10(np.abs(paths.gain[0]) / free_space))
     if abs(error_db) > 1e-3:
         faults.append(f"tracer: line of sight {error_db:+.3f} dB off free space")
@@ -80,7 +80,7 @@ def _tracer_faults() -> list[str]:
 
 
 def _learning_faults() -> list[str]:
-    """Train in a box: every flight reaches the source, and threads do not change the result."""
+    """Train in a box: every flight reaches the source, for any number of threads alike."""
     plan = floorplans.loads(BOX)
     world = GridWorld.from_map(plan, make_map(plan, config=TraceConfig(1, 0)))
     one, two = (
@@ -135,5 +135,5 @@ def _state(cache: KernelCache) -> str:
     if cache.folder is None:
         return "compiled at every start: no folder for them can be written"
     if not cache.n_compiled:
-        return f"were not compiled yet; kept in {cache.folder}"
+        return f"not compiled yet; cached in {cache.folder}"
     return f"{cache.n_compiled} compiled, {cache.n_bytes / 1e6:.1f} MB in {cache.folder}"

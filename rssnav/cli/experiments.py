@@ -16,7 +16,7 @@ from rssnav.kernel_cache import learning_cache, tracer_cache
 if TYPE_CHECKING:
     from rssnav.experiments.paper import Paper
 
-Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Where everything is, or will be.")]
+Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Folder of all results.")]
 RESULTS = Path("results")
 
 
@@ -48,8 +48,8 @@ def run_experiments(
     what: Annotated[
         What,
         typer.Argument(
-            help="The paper; or what its open choices change (sensitivity), readings that "
-            "fluctuate (noise), other methods and the optimum (comparison)."
+            help="The paper; or the effect of choices it does not specify (sensitivity), RSS "
+            "readings that fluctuate (noise), other methods and the optimum (comparison)."
         ),
     ] = What.PAPER,
     quick: Annotated[
@@ -68,18 +68,18 @@ def run_experiments(
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Same seed, same result.")] = 0,
     resume: Annotated[
         bool,
-        typer.Option("--resume/--no-resume", help="Take over trainings that are already there."),
+        typer.Option("--resume/--no-resume", help="Reuse existing trainings."),
     ] = True,
     style: Style = None,
     threads: Threads = None,
 ) -> None:
     """Run the whole paper, or a study beyond it: maps, trainings, figures, tables, a report.
 
-    What is already there and still current is taken over. After Ctrl-C the same command goes on.
+    Existing results that are up to date are reused. After Ctrl-C the same command continues.
     """
     if what is not What.PAPER:
         if runs is not None or not resume:
-            raise typer.BadParameter("--runs and --no-resume belong to the paper")
+            raise typer.BadParameter("--runs and --no-resume apply to the paper only.")
         return _run_study(what, out, quick, seed, style, threads)
     from rssnav.experiments.paper import run_paper
     from rssnav.pictures.style import chosen_style
@@ -98,8 +98,8 @@ def run_experiments(
             )
     except KeyboardInterrupt as interrupt:
         raise KeyboardInterrupt(
-            f"interrupted; finished maps and runs are kept in {out}, and the same command goes on "
-            "from there"
+            f"interrupted; finished maps and runs are kept in {out}, and the same command "
+            "continues from there"
         ) from interrupt
     _print(paper)
 
@@ -119,7 +119,7 @@ def _run_study(
 
 
 def remake_report(out: Out = RESULTS, style: Style = None, threads: Threads = None) -> None:
-    """Make figures, tables and report again from the maps and trainings of an earlier run."""
+    """Recompute figures, tables and report from the maps and trainings of an earlier run."""
     from rssnav.experiments.paper import report_again
     from rssnav.pictures.style import chosen_style
 
@@ -133,7 +133,7 @@ def _must_compile() -> bool:
 
 
 def _print(paper: Paper) -> None:
-    """Print how the paper's claims came out, and where the report is."""
+    """Print the verdicts on the paper's claims, and the report's path."""
     print_table(
         ("claim", "verdict"),
         [(finding.claim.key, finding.verdict) for finding in paper.findings],

@@ -1,4 +1,4 @@
-"""``rssnav explore``: a page in the browser to drag a source and train a UAV."""
+"""``rssnav explore``: a page in the browser to move the source and train a UAV."""
 
 import re
 from typing import Annotated
@@ -24,7 +24,7 @@ def add_to(parent: typer.Typer) -> None:
 
 
 def _check_origin(origin: str) -> str:
-    """Refuse what is not HOST or HOST:PORT."""
+    """Check that an origin is HOST or HOST:PORT."""
     if not ORIGIN.fullmatch(origin):
         raise typer.BadParameter(f"{origin!r} is not HOST or HOST:PORT, such as lab.example:5006.")
     return origin
@@ -34,14 +34,14 @@ def explore(
     plan: Plan = "flat",
     port: Annotated[
         int,
-        typer.Option("--port", metavar="N", min=0, max=65535, help="Port; 0 for any that is free."),
+        typer.Option("--port", metavar="N", min=0, max=65535, help="Port; 0 for any free one."),
     ] = PORT,
     address: Annotated[
         str,
         typer.Option(
             "--address",
             metavar="ADDRESS",
-            help="Where to listen; by default only this computer can open the page.",
+            help="Address to listen on; by default only this computer can open the page.",
         ),
     ] = ADDRESS,
     allow_origin: Annotated[
@@ -50,7 +50,7 @@ def explore(
             "--allow-origin",
             metavar="HOST[:PORT]",
             parser=_check_origin,
-            help="Another name under which browsers may open the page; may be repeated.",
+            help="Another host under which browsers may open the page; may be repeated.",
             show_default=False,
         ),
     ] = None,
@@ -58,7 +58,7 @@ def explore(
         bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
     ] = True,
 ) -> None:
-    """Open the explorer in the browser: drag the source, see its map, train a UAV.
+    """Open the explorer in the browser: move the source, see its map, train a UAV.
 
     Ctrl-C ends it.
     """

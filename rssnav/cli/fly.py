@@ -1,4 +1,4 @@
-"""``rssnav fly``: a trained flight as a moving picture."""
+"""``rssnav fly``: a film of a trained UAV's flight."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def fly(
         list[Path],
         typer.Argument(
             metavar="TRAINING...",
-            help="Results of rssnav train -o; of each one flight is shown.",
+            help="Results of rssnav train -o; one flight of each is shown.",
             show_default=False,
         ),
     ],
@@ -54,17 +54,17 @@ def fly(
         typer.Option(
             metavar="N",
             min=0,
-            help="Which realisation, counted from 0.",
+            help="Realisation, counted from 0.",
             show_default="the one of median length",
         ),
     ] = None,
     frames_per_s: Annotated[
-        int, typer.Option("--fps", metavar="N", min=1, max=50, help="Steps shown in a second.")
+        int, typer.Option("--fps", metavar="N", min=1, max=50, help="Steps shown per second.")
     ] = 10,
     style: Style = None,
     as_json: Json = False,
 ) -> None:
-    """Show how a trained UAV flies: its way over the map, and the RSS it reads, step by step."""
+    """Make a film of a trained UAV's flight: its path over the map, and its RSS readings."""
     from rssnav.pictures.flight_movie import SUFFIXES, MovieError, save_flight_movie
     from rssnav.pictures.style import chosen_style
 

@@ -37,16 +37,28 @@ Height = Annotated[
 ]
 Reflections = Annotated[
     int,
-    typer.Option("--reflections", metavar="N", min=0, max=20, help="Most reflections on a path."),
+    typer.Option(
+        "--reflections", metavar="N", min=0, max=20, help="Maximum number of reflections on a path."
+    ),
 ]
 Diffractions = Annotated[
     int,
-    typer.Option("--diffractions", metavar="N", min=0, max=1, help="Most diffractions on a path."),
+    typer.Option(
+        "--diffractions",
+        metavar="N",
+        min=0,
+        max=1,
+        help="Maximum number of diffractions on a path.",
+    ),
 ]
 Transmissions = Annotated[
     int,
     typer.Option(
-        "--transmissions", metavar="N", min=0, max=20, help="Most walls that a path goes through."
+        "--transmissions",
+        metavar="N",
+        min=0,
+        max=20,
+        help="Maximum transmissions through walls on a path.",
     ),
 ]
 MinPower = Annotated[
@@ -54,8 +66,8 @@ MinPower = Annotated[
     typer.Option(
         "--min-power",
         metavar="DBM",
-        help="Leave out paths known to be weaker; the map bounds what is missing.",
-        show_default="none is left out",
+        help="Prune paths that are weaker; the map stores a bound on their power.",
+        show_default="no threshold",
     ),
 ]
 MaxPaths = Annotated[
@@ -64,7 +76,7 @@ MaxPaths = Annotated[
         "--max-paths",
         metavar="N",
         min=1,
-        help="Raise --min-power until the map takes no more paths than this.",
+        help="Raise --min-power until the map needs no more paths than this.",
         show_default="no limit",
     ),
 ]
@@ -72,9 +84,7 @@ Frequency = Annotated[
     float,
     typer.Option("--frequency", metavar="GHZ", min=0.001, help="Carrier frequency in GHz."),
 ]
-Power = Annotated[
-    float, typer.Option("--power", metavar="DBM", help="Power fed to the source's antenna in dBm.")
-]
+Power = Annotated[float, typer.Option("--power", metavar="DBM", help="Transmit power in dBm.")]
 Edition = Annotated[
     str | None,
     typer.Option(
@@ -82,7 +92,7 @@ Edition = Annotated[
         metavar="P.2040-N",
         callback=_known_edition,
         help="Edition of ITU-R P.2040 for the built-in materials.",
-        show_default="the plan's, else the newest",
+        show_default="the plan's, otherwise the newest",
     ),
 ]
 Threads = Annotated[
@@ -91,14 +101,12 @@ Threads = Annotated[
         "--threads",
         metavar="N",
         min=1,
-        help="How many to work with; the result does not depend on it.",
+        help="Number of threads; the result does not depend on it.",
         show_default="all processors",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
-Force = Annotated[
-    bool, typer.Option("--force", help="Make it again, and replace whatever is at FILE.")
-]
+Force = Annotated[bool, typer.Option("--force", help="Recompute it, and replace an existing FILE.")]
 Picture = Annotated[
     Path | None,
     typer.Option(
@@ -111,7 +119,7 @@ Picture = Annotated[
 
 
 def _check_style(style: str | None) -> str | None:
-    """Refuse a style that matplotlib does not know, as wrong usage."""
+    """Check that matplotlib knows a style; otherwise it is wrong usage."""
     if style is None:
         return None
     from rssnav.pictures.style import check_style
@@ -129,7 +137,7 @@ Style = Annotated[
         "--style",
         metavar="NAME",
         callback=_check_style,
-        help="Lay a matplotlib style over the project's own: its name, or a .mplstyle file.",
+        help="A matplotlib style on top of the project's: its name, or a .mplstyle file.",
         show_default=False,
     ),
 ]
@@ -138,15 +146,15 @@ PICTURE_SUFFIXES = (".png", ".svg", ".pdf")
 
 
 def examples(*commands: str) -> str:
-    """Text below a command's help: command lines that work when pasted."""
+    """Text below a command's help: command lines that work as they are."""
     return "\n\n".join(["Examples:", *(f"  {command}" for command in commands)])
 
 
 def check_suffix(path: Path | None, known: tuple[str, ...], option: str) -> None:
-    """Refuse a file whose name does not end in a known format's suffix, as wrong usage."""
+    """Check that a file's suffix is that of a known format; otherwise it is wrong usage."""
     if path is not None and path.suffix.lower() not in known:
         found = f"the suffix {path.suffix!r}" if path.suffix else "no suffix"
         raise typer.BadParameter(
-            f"{path} has {found}; the format follows from it: give one of {', '.join(known)}.",
+            f"{path} has {found}; it names the format: use one of {', '.join(known)}.",
             param_hint=option,
         )

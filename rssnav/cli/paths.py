@@ -74,7 +74,7 @@ def show_paths(
         ),
     ],
     top: Annotated[
-        int, typer.Option("--top", metavar="N", min=1, help="How many paths to print and draw.")
+        int, typer.Option("--top", metavar="N", min=1, help="Number of paths to print and draw.")
     ] = 10,
     only: Annotated[
         str,
@@ -99,13 +99,13 @@ def show_paths(
     as_json: Json = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="Print CSV, for spreadsheets.")] = False,
 ) -> None:
-    """Trace every path from a plan's source to a receiver and print the strongest.
+    """Trace all paths from a plan's source to a receiver and print the strongest.
 
-    Interactions are written in their order: R a reflection, D a diffraction, T a
-    transmission, LOS none.
+    Interactions are listed in order: R reflection, D diffraction, T transmission; LOS for
+    line of sight.
     """
     if as_json and as_csv:
-        raise typer.BadParameter("give it or --json, not both.", param_hint="--csv")
+        raise typer.BadParameter("use it or --json, not both.", param_hint="--csv")
     check_suffix(picture, DRAWING_SUFFIXES, "--picture")
     loaded = floorplans.load(plan)
     _check_inside(loaded, plan, to)
@@ -126,7 +126,7 @@ def show_paths(
 def _trace(
     plan: FloorPlan, name: str, to: Position, config: TraceConfig, edition: str | None
 ) -> Paths:
-    """Every path to a receiver, strongest first."""
+    """All paths to a receiver, strongest first."""
     if not tracer_cache().n_compiled:
         note(COMPILING)
     source = Transmitter(plan.source, POWER_DBM, FREQUENCY_HZ)
@@ -143,7 +143,7 @@ def _chosen(paths: Paths, only: str, top: int) -> Paths:
 
 
 def _draw(plan: FloorPlan, paths: Paths, only: str, picture: Path, style: str | None) -> None:
-    """Draw paths into a file; a note says so where there is none."""
+    """Draw paths into a file, or print a note if there are none."""
     from rssnav.pictures.paths import save_paths_picture
     from rssnav.pictures.style import chosen_style
 
@@ -221,7 +221,7 @@ def _print(rows: list[dict[str, Any]], totals: dict[str, Any]) -> None:
 
 
 def _print_csv(rows: list[dict[str, Any]]) -> None:
-    """Print a line a path; its vertices as "x y z; x y z"."""
+    """Print a line per path, with its vertices as "x y z; x y z"."""
     table = csv.writer(sys.stdout, lineterminator="\n")
     table.writerow(CSV_COLUMNS)
     for number, row in enumerate(rows, 1):

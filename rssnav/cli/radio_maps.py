@@ -55,7 +55,7 @@ def add_to(parent: typer.Typer) -> None:
 def map_plan(
     plan: Plan,
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="FILE", help="Where to keep the map (HDF5).")
+        Path, typer.Option("-o", "--output", metavar="FILE", help="File of the map (HDF5).")
     ],
     picture: Picture = None,
     style: Style = None,
@@ -73,9 +73,9 @@ def map_plan(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Trace the radio map of a plan: RSS in every cell, from every path of bounded order.
+    """Trace the radio map of a plan: RSS in every cell, from all paths of bounded order.
 
-    A map that is up to date is not made again. Ctrl-C leaves the old file or none.
+    A map that is up to date is not recomputed. Ctrl-C leaves the old file or none.
     """
     check_suffix(picture, PICTURE_SUFFIXES, "--picture")
     loaded = floorplans.load(plan)
@@ -116,16 +116,16 @@ def map_plan(
 
 
 def map_scenarios(
-    out: Annotated[Path, typer.Option(metavar="FOLDER", help="Where to write them.")] = Path(
+    out: Annotated[Path, typer.Option(metavar="FOLDER", help="Folder of the maps.")] = Path(
         "results/maps"
     ),
     style: Style = None,
     threads: Threads = None,
     force: Force = False,
 ) -> None:
-    """Make the radio maps of the paper's two scenarios, with a picture each.
+    """Trace the radio maps of the paper's two scenarios, and draw them.
 
-    Only what has changed is made again.
+    Only what has changed is recomputed.
     """
     with stage_progress(compiles=not tracer_cache().n_compiled) as show:
         for name in SCENARIOS:
@@ -157,7 +157,7 @@ def _draw(plan: FloorPlan, radio_map: RadioMap, picture: Path, style: str | None
 
 
 def _facts(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[str, Any]:
-    lit = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
+    covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
     return {
         "file": str(output),
         "picture": None if picture is None else str(picture),
@@ -165,9 +165,9 @@ def _facts(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[str,
         "cell_size_m": radio_map.grid.cell_size_m,
         "height_m": radio_map.grid.height_m,
         "cells": radio_map.rss_dbm.size,
-        "cells_without_path": radio_map.rss_dbm.size - lit.size,
-        "rss_dbm_min": float(lit.min()) if lit.size else None,
-        "rss_dbm_max": float(lit.max()) if lit.size else None,
+        "cells_without_path": radio_map.rss_dbm.size - covered.size,
+        "rss_dbm_min": float(covered.min()) if covered.size else None,
+        "rss_dbm_max": float(covered.max()) if covered.size else None,
         "paths": int(radio_map.path_count.sum()),
         "tracing_s": radio_map.provenance["wall_time_s"],
         "plan_sha256": radio_map.plan_sha256,
@@ -179,10 +179,9 @@ def _print_facts(facts: dict[str, Any]) -> None:
     rss = "no cell has a path"
     if facts["rss_dbm_min"] is not None:
         rss = f"{facts['rss_dbm_min']:.2f} to {facts['rss_dbm_max']:.2f} dBm"
-    dark = facts["cells_without_path"]
     pairs = [
         ("map", facts["file"]),
-        ("cells", f"{n_x} x {n_y}, {dark} of them without a path"),
+        ("cells", f"{n_x} x {n_y}, {facts['cells_without_path']} of them without a path"),
         ("RSS", rss),
         ("paths", f"{facts['paths']:,}".replace(",", " ")),
         ("tracing", f"{facts['tracing_s']:.1f} s"),

@@ -41,7 +41,7 @@ STATES = "States of the RSS agent"
 
 
 class AgentName(StrEnum):
-    """The agents there are."""
+    """Agents that can be trained."""
 
     RSS = "rss"
     LOCATION = "location"
@@ -65,9 +65,9 @@ def train_agent(
         Path,
         typer.Option("--map", metavar="FILE", help="The plan's radio map (rssnav map)."),
     ],
-    agent: Annotated[AgentName, typer.Option(help="What it senses.")] = AgentName.RSS,
+    agent: Annotated[AgentName, typer.Option(help="What the agent senses.")] = AgentName.RSS,
     speed: Annotated[
-        int, typer.Option(metavar="V", min=1, help="Cells flown in a step along an axis.")
+        int, typer.Option(metavar="V", min=1, help="Cells per step along an axis.")
     ] = 1,
     runs: Annotated[int, typer.Option(metavar="N", min=1, help="Realisations.")] = 100,
     episodes: Annotated[
@@ -75,7 +75,7 @@ def train_agent(
         typer.Option(
             metavar="N",
             min=1,
-            help="Episodes of each; with --until-converged the most it may take.",
+            help="Episodes of each; a maximum with --until-converged.",
             show_default=f"{EPISODES}, or {EPISODES_TO_CONVERGE} with --until-converged",
         ),
     ] = None,
@@ -92,18 +92,18 @@ def train_agent(
             "-o",
             "--output",
             metavar="FILE",
-            help="Keep the result (HDF5). Runs that are there already are not trained again.",
+            help="File of the result (HDF5). Runs that it has already are not trained again.",
             show_default=False,
         ),
     ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Train from the beginning, and replace FILE.")
+        bool, typer.Option("--force", help="Train from scratch, and replace FILE.")
     ] = False,
     tolerance: Annotated[
         float | None,
         typer.Option(
             metavar="DB",
-            help="A reading this near to a known state is that state.",
+            help="A reading within this of a known state is that state.",
             show_default="every value is a state",
             rich_help_panel=STATES,
         ),
@@ -121,7 +121,7 @@ def train_agent(
         float,
         typer.Option(
             metavar="DB",
-            help="Standard deviation of the readings; needs --tolerance or --interval.",
+            help="Standard deviation of the RSS readings; needs --tolerance or --interval.",
             rich_help_panel=STATES,
         ),
     ] = 0.0,
@@ -129,7 +129,7 @@ def train_agent(
         float,
         typer.Option(
             metavar="DBM",
-            help="The RSS agent has found the source above this reading.",
+            help="The RSS agent has found the source above this RSS.",
             rich_help_panel=GOAL,
         ),
     ] = RssAgent.terminal_dbm,
@@ -137,7 +137,7 @@ def train_agent(
         float,
         typer.Option(
             metavar="M",
-            help="The location agent has found it when nearer than this in metres.",
+            help="The location agent has found the source within this distance in metres.",
             rich_help_panel=GOAL,
         ),
     ] = LocationAgent.terminal_distance_m,
@@ -147,25 +147,25 @@ def train_agent(
     eta: Annotated[
         float,
         typer.Option(
-            metavar="E", help="Decay of epsilon and alpha a step.", rich_help_panel=LEARNING
+            metavar="E", help="Decay of epsilon and alpha per step.", rich_help_panel=LEARNING
         ),
     ] = QLearning.eta,
     initial_q: Annotated[
         float,
-        typer.Option(metavar="Q", help="Q before learning.", rich_help_panel=LEARNING),
+        typer.Option(metavar="Q", help="Initial Q.", rich_help_panel=LEARNING),
     ] = QLearning.initial_q,
     max_steps: Annotated[
         int,
         typer.Option(
-            metavar="N", help="Steps after which an episode is cut.", rich_help_panel=LEARNING
+            metavar="N", help="Steps after which an episode is truncated.", rich_help_panel=LEARNING
         ),
     ] = QLearning.max_steps,
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
-    """Train an agent to fly from a plan's start to its source, many times over.
+    """Train an agent to fly from a plan's start to its source, in many realisations.
 
-    Ctrl-C keeps the finished runs in FILE; the same command then goes on from there.
+    Ctrl-C keeps the finished runs in FILE; the same command then continues from there.
     """
     loaded = floorplans.load(plan)
     radio_map = RadioMap.load(map_file)
@@ -202,7 +202,7 @@ def _learning(**parameters: Any) -> QLearning:
 
 @dataclass(frozen=True)
 class _Senses:
-    """What the options say of the agent."""
+    """Options of the agent."""
 
     agent: AgentName
     tolerance: float | None
@@ -212,9 +212,9 @@ class _Senses:
     goal_distance: float
 
     def agent_in(self, world: GridWorld) -> Agent:
-        """Make the agent; options that contradict each other are wrong usage."""
+        """Make the agent; contradictory options are wrong usage."""
         if self.tolerance is not None and self.interval is not None:
-            raise typer.BadParameter("give --tolerance or --interval, not both.")
+            raise typer.BadParameter("use --tolerance or --interval, not both.")
         try:
             if self.agent is AgentName.LOCATION:
                 self._refuse_rss_options()
@@ -227,8 +227,8 @@ class _Senses:
     def _refuse_rss_options(self) -> None:
         if self.tolerance is not None or self.interval is not None or self.fluctuation != 0.0:
             raise typer.BadParameter(
-                "--tolerance, --interval and --fluctuation are the RSS agent's; leave them out, or "
-                "use --agent rss."
+                "--tolerance, --interval and --fluctuation apply to the RSS agent only; leave them "
+                "out, or use --agent rss."
             )
 
 
@@ -238,14 +238,14 @@ def _states(
     if tolerance is not None:
         return ToleranceStates(tolerance)
     if interval is not None:
-        lit = rss_dbm[np.isfinite(rss_dbm)]
-        low, high = float(np.floor(lit.min())), float(np.ceil(lit.max()))
+        finite = rss_dbm[np.isfinite(rss_dbm)]
+        low, high = float(np.floor(finite.min())), float(np.ceil(finite.max()))
         return IntervalStates.uniform(low, high, interval)
     return ExactStates()
 
 
 class _Job:
-    """A training, and the file that keeps its runs."""
+    """A training, and the file that stores its runs."""
 
     def __init__(
         self, world: GridWorld, agent: Agent, schedule: dict[str, Any], output: Path | None
@@ -256,7 +256,7 @@ class _Job:
         self._output = output
 
     def earlier(self) -> TrainingResult | None:
-        """Return the runs of this training that its file holds; refuse any other file."""
+        """Return the finished runs in the file; reject any other file."""
         if self._output is None or not self._output.exists():
             return None
         try:
@@ -267,7 +267,7 @@ class _Job:
         return found
 
     def run(self, earlier: TrainingResult | None, threads: int | None) -> TrainingResult:
-        """Train what is missing, and keep it; on Ctrl-C, keep what there is."""
+        """Train the missing runs and save them; on Ctrl-C, save the finished ones."""
         stage = f"{self._agent.name} agent, speed {self._world.speed}"
         try:
             with one_progress(stage, compiles=not learning_cache().n_compiled) as progress:
@@ -296,7 +296,7 @@ class _Job:
             raise ResultFileError(f"{self._output}: {error}; --force replaces it") from error
 
     def _keep(self, finished: TrainingResult | None) -> str:
-        """Save finished runs; say what was kept."""
+        """Save finished runs; return a message that says what was kept."""
         runs = self._schedule["runs"]
         if finished is None:
             return f"interrupted before the first of {runs} runs was finished; nothing to keep"
@@ -304,11 +304,11 @@ class _Job:
         if self._output is None:
             return f"{done} and lost, as no -o FILE was given to keep them"
         finished.save(self._output)
-        return f"{done} and kept in {self._output}; the same command goes on from there"
+        return f"{done} and kept in {self._output}; the same command continues from there"
 
 
 def _facts(result: TrainingResult) -> dict[str, Any]:
-    """What a training amounts to; flights are the final greedy ones that reach the source."""
+    """Summary of a training; flights are the final greedy ones that reach the source."""
     world, converged = result.world, result.converged_episode >= 0
     terminal = result.agent.decision_process(world, result.learning).terminal
     shortest = {cost: shortest_path(world, terminal, cost) for cost in ("steps", "metres")}
@@ -335,7 +335,7 @@ def _facts(result: TrainingResult) -> dict[str, Any]:
 
 
 def _spread(values: NDArray[Any]) -> dict[str, float] | None:
-    """Mean, least and greatest of values (n,); None for none."""
+    """Mean, minimum and maximum of values (n,); None for none."""
     if values.size == 0:
         return None
     return {"mean": float(values.mean()), "min": float(values.min()), "max": float(values.max())}
@@ -347,7 +347,7 @@ def _print(facts: dict[str, Any], output: Path | None) -> None:
         ("agent", f"{facts['agent']}, speed {facts['speed']}, {facts['states']} cells"),
         ("runs", f"{runs} of {_text(facts['episodes'])} episodes, seed {facts['seed']}"),
         ("states", _text(facts["labels"])),
-        ("cut episodes", facts["truncated_episodes"]),
+        ("truncated episodes", facts["truncated_episodes"]),
         ("CPU time", f"{facts['cpu_s']:.1f} s"),
         ("converged", f"{facts['converged_runs']} of {runs}"),
     ]

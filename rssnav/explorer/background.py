@@ -1,4 +1,4 @@
-"""Work on a thread of its own, of which only the newest request counts."""
+"""A worker thread that runs only the newest request."""
 
 import logging
 from collections.abc import Callable
@@ -8,26 +8,26 @@ LOGGER = logging.getLogger(__name__)
 
 
 class SupersededError(Exception):
-    """A newer request has taken the place of this one."""
+    """A newer request has replaced this one."""
 
 
 class Ticket:
-    """Tells a job whether it is still wanted."""
+    """Cancellation token of a job."""
 
     def __init__(self) -> None:
         self._cancelled = Event()
 
     def cancel(self) -> None:
-        """Tell the job to stop."""
+        """Ask the job to stop."""
         self._cancelled.set()
 
     @property
     def cancelled(self) -> bool:
-        """Whether the job was told to stop."""
+        """Whether the job was asked to stop."""
         return self._cancelled.is_set()
 
     def check(self) -> None:
-        """Raise `SupersededError` where the job was told to stop."""
+        """Raise `SupersededError` if the job was asked to stop."""
         if self.cancelled:
             raise SupersededError
 
@@ -36,15 +36,15 @@ Job = Callable[[Ticket], None]
 
 
 class NewestOnly:
-    """A thread that runs one job at a time and drops what a newer one makes needless.
+    """A thread that runs one job at a time and cancels it when a newer one is submitted.
 
-    A job must look at its ticket often, and handle its own errors; one that escapes is logged, and
-    the thread goes on.
+    A job must check its ticket often and handle its own errors; any other error is logged, and the
+    thread continues.
 
     Parameters
     ----------
     name : str
-        Of the thread.
+        Name of the thread.
     """
 
     def __init__(self, name: str) -> None:
@@ -56,7 +56,7 @@ class NewestOnly:
         self._closed = False
 
     def submit(self, job: Job) -> None:
-        """Run a job as soon as the one before it has noticed that it is no longer wanted."""
+        """Cancel the current job, and run this one as soon as it has stopped."""
         with self._changed:
             if self._closed:
                 return
@@ -69,13 +69,13 @@ class NewestOnly:
             self._changed.notify()
 
     def cancel(self) -> None:
-        """Stop what is running and forget what is waiting."""
+        """Cancel the running and the waiting job."""
         with self._changed:
             self._ticket.cancel()
             self._waiting = None
 
     def close(self) -> None:
-        """Cancel everything and end the thread; later jobs are ignored."""
+        """Cancel all jobs and end the thread; later jobs are ignored."""
         with self._changed:
             self._closed = True
             self._ticket.cancel()
@@ -98,7 +98,7 @@ class NewestOnly:
                 LOGGER.exception("a job of %s failed", self._name)
 
     def _next(self) -> tuple[Job, Ticket] | None:
-        """Wait for a job; None once closed."""
+        """Wait for a job; None after `close`."""
         with self._changed:
             self._changed.wait_for(lambda: self._closed or self._waiting is not None)
             task, self._waiting = self._waiting, None

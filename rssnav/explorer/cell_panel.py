@@ -1,4 +1,4 @@
-"""The strongest paths to a chosen cell: a table, and lines in the plan and in three dimensions."""
+"""The strongest paths to the selected cell: a table, and lines in the plan and in 3D."""
 
 from html import escape
 
@@ -15,7 +15,7 @@ from rssnav.explorer.tracing import CellPaths
 
 TOP = 12
 LINE_RADIUS = 0.002
-"""Of a path in three dimensions, as a share of the plan's diagonal."""
+"""Radius of a path in 3D, as a fraction of the plan's diagonal."""
 
 _INVITATION = '<p class="quiet">Click a cell of the map to see its strongest paths.</p>'
 
@@ -49,13 +49,13 @@ class CellPanel:
 
 
 def strongest(found: CellPaths, top: int = TOP) -> list[NDArray[np.float64]]:
-    """Vertices (n_i, 3) [m] of the strongest paths, source and receiver included."""
+    """Vertices (n_i, 3) [m] of the strongest paths, both ends included."""
     paths = found.paths
     return [paths.vertices[k, : paths.n_interactions[k] + 2] for k in range(min(top, len(paths)))]
 
 
 def page_3d(plan: FloorPlan, found: CellPaths | None) -> str:
-    """HTML of a frame with the plan, and the strongest paths to a cell if one is chosen."""
+    """HTML of a frame with the plan and the strongest paths to the selected cell, if any."""
     scene = plan_scene(plan, opacity=0.55)
     title = plan.name
     if found is not None:
@@ -94,7 +94,7 @@ def _rows(found: CellPaths) -> str:
         f"<td>{1e9 * paths.delay_s[k]:.1f}</td><td>{paths.sequence(k)}</td></tr>"
         for k in range(top)
     ]
-    heads = ("path", "power [dBm]", "length [m]", "delay [ns]", "way")
+    heads = ("path", "power [dBm]", "length [m]", "delay [ns]", "interactions")
     head = "".join(f"<th>{name}</th>" for name in heads)
     note = "R reflection, D diffraction, LOS line of sight"
     return (

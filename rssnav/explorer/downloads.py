@@ -1,4 +1,4 @@
-"""What one takes home: the map, a figure of it, the plan."""
+"""Files to download: the map, a figure of it, the plan."""
 
 from collections.abc import Callable
 from io import BytesIO
@@ -16,7 +16,7 @@ from rssnav.pictures.radio_map import save_map_picture
 
 
 def plan_file(session: Session) -> bytes:
-    """TOML of the plan with source and start where they are now."""
+    """TOML of the plan with its current source and start."""
     return floorplans.dumps(session.plan).encode()
 
 
@@ -35,13 +35,13 @@ def figure_file(traced: TracedMap, suffix: str) -> bytes:
 
 
 def file_name(plan_name: str, suffix: str) -> str:
-    """Name of a file after its plan, of letters, digits, dashes and dots only."""
+    """File name made from the plan's name: letters, digits, dashes and dots only."""
     kept = "".join(c if c.isascii() and c.isalnum() else "-" for c in plan_name)
     return f"{'-'.join(filter(None, kept.split('-'))) or 'plan'}{suffix}"
 
 
 def _written(name: str, save: Callable[[Path], None]) -> bytes:
-    """Content of a file that a function writes."""
+    """Return the content of a file that a function writes."""
     with TemporaryDirectory(prefix="rssnav-") as folder:
         path = Path(folder) / name
         save(path)
@@ -49,7 +49,7 @@ def _written(name: str, save: Callable[[Path], None]) -> bytes:
 
 
 class Downloads:
-    """Buttons to download, of use once the map is complete.
+    """Download buttons; those of the map are enabled when it is complete.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class Downloads:
         self._plan = self._button("Plan (TOML)", lambda: BytesIO(plan_file(session)))
         note = (
             '<p class="quiet">The map opens in h5py, xarray and MATLAB; <code>rssnav train</code> '
-            "and <code>rssnav map</code> take map and plan as they are.</p>"
+            "and <code>rssnav map</code> read map and plan as they are.</p>"
         )
         self.view = pn.Column(
             *self._of_map.values(),
@@ -81,7 +81,7 @@ class Downloads:
         self.show()
 
     def show(self) -> None:
-        """Name the files after the plan; offer the map's when it is complete."""
+        """Name the files after the plan; enable the map's buttons when it is complete."""
         name, complete = self._session.plan.name, self._session.complete_map is not None
         self._plan.filename = file_name(name, ".toml")
         for suffix, button in self._of_map.items():

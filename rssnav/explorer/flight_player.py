@@ -1,4 +1,4 @@
-"""Play the flights of a training over the map, episode by episode."""
+"""Replay the flights of a training over the map, episode by episode."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,18 +11,18 @@ from rssnav.explorer.styles import WIDGETS
 from rssnav.explorer.training import Flight, LiveTraining
 
 FRAMES = 30
-"""Most frames of a flight."""
+"""Maximum number of frames of a flight."""
 
 FRAME_MS = 50
 
 
 class FlightPlayer:
-    """Buttons and sliders that lead from frame to frame, and an episode chooser.
+    """Playback controls and a slider of episodes.
 
     Parameters
     ----------
     show : callable
-        Called with a flight and the number of steps it is shown after.
+        Called with a flight and the step up to which it is shown.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class FlightPlayer:
         )
 
     def follow(self, training: LiveTraining | None) -> None:
-        """Take the flights there are by now; while it learns, show the latest."""
+        """Update the flights of a training; while it runs, show the latest."""
         flights = [] if training is None else training.flights[:]
         if training is self._training and len(flights) + 1 == self._first.size:
             return
@@ -69,7 +69,7 @@ class FlightPlayer:
             self._go(None)
 
     def show(self, wanted: bool) -> None:
-        """Show the player where it is wanted and has flights, and its flight with it."""
+        """Show the player and its flight if wanted and if there are flights."""
         visible = wanted and self._first.size > 1
         if visible and not self.view.visible:
             self._go(None)
@@ -79,9 +79,9 @@ class FlightPlayer:
         """Show the flight and step of the player's frame."""
         if self._training is None or self._first.size == 1:
             return
-        index, share = place_of(self._first, self._player.value)
+        index, fraction = flight_at(self._first, self._player.value)
         flight = self._training.flights[index]
-        step = round(share * flight.steps)
+        step = round(fraction * flight.steps)
         self._show(flight, step)
         self._text.object = _words(flight, step, self._training.settings.episodes)
         self._going = True
@@ -89,7 +89,7 @@ class FlightPlayer:
         self._going = False
 
     def _jump(self, event: Any) -> None:
-        """Go to the beginning of an episode's flight."""
+        """Jump to the start of an episode's flight."""
         if self._going:
             return
         episodes = self._episode.options
@@ -102,14 +102,14 @@ def first_frames(steps: list[int]) -> NDArray[np.int64]:
     Parameters
     ----------
     steps : list of int
-        Of each flight; it has a frame a step and one for its start, but at most `FRAMES`.
+        Steps of each flight; it has a frame for its start and for each step, at most `FRAMES`.
     """
     frames = np.minimum(np.array(steps, dtype=np.int64) + 1, FRAMES)
     return np.concatenate(([0], np.cumsum(frames)))
 
 
-def place_of(first: NDArray[np.int64], frame: int) -> tuple[int, float]:
-    """Which flight a frame belongs to, and which share of it is flown by then."""
+def flight_at(first: NDArray[np.int64], frame: int) -> tuple[int, float]:
+    """Index of the flight that a frame shows, and the fraction of it that is flown."""
     index = int(np.searchsorted(first, frame, side="right")) - 1
     index = min(max(index, 0), first.size - 2)
     last = int(first[index + 1] - first[index]) - 1
@@ -117,7 +117,7 @@ def place_of(first: NDArray[np.int64], frame: int) -> tuple[int, float]:
 
 
 def _words(flight: Flight, step: int, episodes: int) -> str:
-    end = "finds the source" if flight.reached else "is cut"
+    end = "reaches the source" if flight.reached else "is truncated"
     return (
         f"Episode <b>{flight.episode}</b> of {episodes}: step {step} of {flight.steps}, "
         f'<span class="quiet">which {end}</span>'

@@ -1,6 +1,6 @@
 """``python -m rssnav.explorer.import_worker FILE PLAN BYTES``: import a file within limited memory.
 
-`rssnav.explorer.uploads` runs it, so that a file made to exhaust a reader ends this process only.
+`rssnav.explorer.uploads` runs it, so that a malicious file can only exhaust this process.
 """
 
 import sys
@@ -24,7 +24,7 @@ def main(file: str, plan: str, n_bytes: str) -> int:
 
 
 def limit_memory(n_bytes: int) -> None:
-    """Let this process take no more memory, where the system can see to it."""
+    """Limit the memory of this process, where the operating system supports it."""
     try:
         import resource
     except ImportError:

@@ -1,4 +1,4 @@
-"""How much the explorer takes on: it serves people who may upload anything."""
+"""Limits of the explorer, which serves users who may upload anything."""
 
 from dataclasses import dataclass
 
@@ -10,24 +10,24 @@ from raytrace import Grid
 
 @dataclass(frozen=True)
 class Limits:
-    """What a plan may ask of the server.
+    """Limits on uploads, plans and maps.
 
     Attributes
     ----------
     upload_bytes : int
-        Size of a file.
+        Maximum size of a file [bytes].
     walls : int
-        Straight walls of a plan.
+        Maximum number of straight walls of a plan.
     cells : int
-        Cells of a map.
+        Maximum number of cells of a map.
     work : int
-        Walls times cells, to which the time of a map is about proportional.
+        Maximum of walls times cells; the time of a map is roughly proportional to it.
     map_s : float
-        Time after which the tracing of a map is given up [s].
-    reading_s : float
-        Time after which the reading of an upload is given up [s].
-    reading_bytes : int
-        Memory that the reading of an upload may take.
+        Time limit for tracing a map [s].
+    import_s : float
+        Time limit for importing an upload [s].
+    import_bytes : int
+        Memory limit for importing an upload [bytes].
     """
 
     upload_bytes: int = 8_000_000
@@ -35,8 +35,8 @@ class Limits:
     cells: int = 40_000
     work: int = 15_000_000
     map_s: float = 300.0
-    reading_s: float = 60.0
-    reading_bytes: int = 4_000_000_000
+    import_s: float = 60.0
+    import_bytes: int = 4_000_000_000
 
     def check_plan(self, plan: FloorPlan) -> None:
         """Raise `PlanError` for a plan with too many walls."""
@@ -46,7 +46,7 @@ class Limits:
         """Raise `PlanError` for too many walls."""
         if n_walls > self.walls:
             raise PlanError(
-                f"{n_walls} walls; the explorer takes plans of at most {self.walls}: leave out "
+                f"{n_walls} walls; the explorer accepts plans of at most {self.walls}: leave out "
                 "details, or use `rssnav map`, which has no limit",
                 origin=origin,
             )

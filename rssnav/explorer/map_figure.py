@@ -1,4 +1,4 @@
-"""The map on the page: RSS in colour, walls, source and start to drag, paths, a flight."""
+"""The map on the page: RSS in colour, walls, draggable source and start, paths, a flight."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ FONT = "Inter, system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', A
 FLOOR = "#fbfaf7"
 PATH_COLOURS = "YlOrRd"
 PATH_RANGE_DB = 30.0
-"""Paths weaker than the strongest by this much have the lightest colour."""
+"""Paths this much weaker than the strongest have the lightest colour."""
 
 FADED, PLAIN = 0.35, 1.0
 TRAIL = 120
-"""Latest steps of a flight that are drawn strongly."""
+"""Latest steps of a flight, drawn in full colour."""
 
 MARKS = ("source", "start")
 MARK_REACH = 0.03
-"""How near to a mark a drag must begin, as a share of the plan's longer side."""
+"""Largest distance from a mark at which a drag begins, as a fraction of the plan's longer side."""
 
 _EMPTY_LINES: dict[str, list[Any]] = {"xs": [], "ys": []}
 _EMPTY_POINTS: dict[str, list[float]] = {"x": [], "y": []}
@@ -58,11 +58,11 @@ class MapFigure:
     ----------
     plan : FloorPlan
     height_m : float
-        Of the receivers above the floor; walls that are solid there are dark [m].
+        Height of the receivers above the floor [m]; walls that are solid there are dark.
     on_move : callable
-        Called with which mark, "source" or "start", and where it was dropped, x and y [m].
+        Called with the mark, "source" or "start", and where it was dropped, x and y [m].
     on_drag : callable
-        Called likewise while a mark is on the move.
+        Called likewise while a mark is dragged.
     on_tap : callable
         Called with x and y [m] of a tap.
 
@@ -89,7 +89,7 @@ class MapFigure:
             palette=Viridis256, low=-1.0, high=0.0, low_color="#00000000"
         )
         self._image = ColumnDataSource({name: [] for name in ("rss", "x", "y", "dw", "dh")})
-        self._dark = ColumnDataSource(dict(_EMPTY_POINTS))
+        self._uncovered = ColumnDataSource(dict(_EMPTY_POINTS))
         self._draw_map()
         self._draw_walls(plan, height_m)
         self._cell = ColumnDataSource(dict(_EMPTY_POINTS))
@@ -106,11 +106,11 @@ class MapFigure:
         self._follow_drags()
 
     def show_map(self, radio_map: RadioMap) -> None:
-        """Show a map's RSS, and what else it carries under the pointer."""
+        """Show a map's RSS, and its other layers in the tooltip."""
         grid, half = radio_map.grid, 0.5 * radio_map.grid.cell_size_m
-        lit = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
-        if lit.size:
-            self._mapper.update(low=float(lit.min()), high=float(lit.max()) + 1e-9)
+        covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
+        if covered.size:
+            self._mapper.update(low=float(covered.min()), high=float(covered.max()) + 1e-9)
         self._image.data = {
             **{name: [values] for name, values in _layers(radio_map).items()},
             "x": [grid.x[0] - half],
@@ -119,17 +119,17 @@ class MapFigure:
             "dh": [grid.y[-1] - grid.y[0] + 2 * half],
         }
         self._hover.tooltips = _tooltips(radio_map)
-        dark = grid.points()[~np.isfinite(radio_map.rss_dbm).ravel()]
-        self._dark_cells.glyph.update(width=grid.cell_size_m, height=grid.cell_size_m)
-        self._dark.data = {"x": dark[:, 0], "y": dark[:, 1]}
+        uncovered = grid.points()[~np.isfinite(radio_map.rss_dbm).ravel()]
+        self._uncovered_cells.glyph.update(width=grid.cell_size_m, height=grid.cell_size_m)
+        self._uncovered.data = {"x": uncovered[:, 0], "y": uncovered[:, 1]}
 
     def show_marks(self, plan: FloorPlan) -> None:
-        """Put the marks where source and start are."""
+        """Move the marks to the plan's source and start."""
         self._plan = plan
         self._marks.data = _mark_columns(plan)
 
     def show_cell(self, centre: tuple[float, float] | None, side_m: float) -> None:
-        """Frame a cell (x, y) [m], or none."""
+        """Frame the cell at (x, y) [m], or none."""
         self._frame.glyph.update(width=side_m, height=side_m)
         self._cell.data = _points(np.array([centre]) if centre else np.empty((0, 2)))
 
@@ -141,9 +141,9 @@ class MapFigure:
         Parameters
         ----------
         vertices : list of (n_i, 2 or 3) float64
-            Of each path [m].
+            Vertices of each path [m].
         power_dbm : (n,) float64
-            Of each path [dBm].
+            Power of each path [dBm].
         """
         colours = path_colours(power_dbm)
         self._paths.data = {
@@ -154,14 +154,14 @@ class MapFigure:
         self._picture.glyph.update(global_alpha=FADED if vertices else PLAIN)
 
     def show_flight(self, position: NDArray[np.float64], step: int, agent: str) -> None:
-        """Draw a flight in its agent's colour: the whole way lightly, trail and UAV over it.
+        """Draw a flight in its agent's colour: all of it lightly, trail and UAV over it.
 
         Parameters
         ----------
         position : (n + 1, 2) float64
-            Where it leads [m].
+            Cell centres along the flight [m].
         step : int
-            Where the UAV is, 0 to n.
+            Position of the UAV, 0 to n.
         agent : str
             "rss" or "location".
         """
@@ -175,7 +175,7 @@ class MapFigure:
         self._uav.data = _points(position[step : step + 1])
 
     def hide_flight(self) -> None:
-        """Take the flight from the map."""
+        """Remove the flight from the map."""
         self._flown = np.empty((0, 2))
         for source in (self._flight, self._trail, self._uav):
             source.data = _points(self._flown)
@@ -196,8 +196,8 @@ class MapFigure:
     def _draw_map(self) -> None:
         glyph = Image(image="rss", x="x", y="y", dw="dw", dh="dh", color_mapper=self._mapper)
         self._picture = self.model.add_glyph(self._image, glyph)
-        self._dark_cells = self.model.rect(
-            "x", "y", 1.0, 1.0, source=self._dark, fill_color=NO_PATH, line_color=None,
+        self._uncovered_cells = self.model.rect(
+            "x", "y", 1.0, 1.0, source=self._uncovered, fill_color=NO_PATH, line_color=None,
             hatch_pattern="cross", hatch_color="#b5b5b5", hatch_scale=7, hatch_weight=0.5,
         )  # fmt: skip
         self._hover = HoverTool(
@@ -258,16 +258,18 @@ class MapFigure:
         self._on_tap(event.x, event.y)
 
     def _moved(self, _name: str, _old: object, new: dict[str, Any]) -> None:
-        """Tell which mark was dropped somewhere else; bring back one that was deleted."""
+        """Report a mark that was dropped elsewhere; restore one that was deleted."""
         if len(new["x"]) != len(MARKS):
             self._marks.data = _mark_columns(self._plan)
             return
-        for which, x, y, before in zip(MARKS, new["x"], new["y"], _places(self._plan), strict=True):
+        for which, x, y, before in zip(
+            MARKS, new["x"], new["y"], _mark_positions(self._plan), strict=True
+        ):
             if (x, y) != before:
                 self._on_move(which, float(x), float(y))
 
     def _follow_drags(self) -> None:
-        """Tell where a mark is while it is on the move."""
+        """Report the position of a mark while it is dragged."""
 
         def begin(event: Any) -> None:
             self._dragged = self._mark_at(event.x, event.y)
@@ -284,9 +286,9 @@ class MapFigure:
         self.model.on_event(PanEnd, end)
 
     def _mark_at(self, x: float, y: float) -> str | None:
-        """Which mark is under a point [m]."""
+        """Return the mark at a point [m]; None if there is none."""
         x_min, y_min, x_max, y_max = self._plan.bounds
-        distance_m = np.hypot(*(np.array(_places(self._plan)) - (x, y)).T)
+        distance_m = np.hypot(*(np.array(_mark_positions(self._plan)) - (x, y)).T)
         nearest = int(np.argmin(distance_m))
         reach_m = MARK_REACH * max(x_max - x_min, y_max - y_min)
         return MARKS[nearest] if distance_m[nearest] < reach_m else None
@@ -301,7 +303,7 @@ def path_colours(power_dbm: NDArray[np.float64]) -> list[str]:
 
 
 def _empty_figure() -> figure:
-    """A figure true to scale, with a quiet frame and without the library's logo."""
+    """Return a figure true to scale, without frame lines and without the library's logo."""
     model = figure(
         sizing_mode="stretch_both",
         min_height=280,
@@ -326,35 +328,35 @@ def _empty_figure() -> figure:
 
 
 def _layers(radio_map: RadioMap) -> dict[str, NDArray[Any]]:
-    """What a map tells of each cell, (n_y, n_x) each, by the name it has under the pointer."""
+    """Layers (n_y, n_x) of a map that the tooltip shows, by name."""
     layers = {"rss": radio_map.rss_dbm, "path_count": radio_map.path_count}
     spread_s = radio_map.delay_spread_s
     return layers if spread_s is None else {**layers, "delay_spread_s": spread_s}
 
 
 def _written_in(unit: str, factor: float = 1.0) -> CustomJSHover:
-    """Write a number under the pointer with a unit; one that is infinite means no path."""
+    """Return a tooltip format with a unit; an infinite number means no path."""
     return CustomJSHover(
         code=f"return isFinite(value) ? ({factor!r} * value).toFixed(1) + ' {unit}' : 'no path'"
     )
 
 
 def _tooltips(radio_map: RadioMap) -> list[tuple[str, str]]:
-    """Lines of the box under the pointer."""
+    """Rows of the tooltip."""
     rows = [("RSS", "@rss{custom}"), ("paths", "@path_count{0,0}")]
     if "delay_spread_s" in _layers(radio_map):
         rows.append(("delay spread", "@delay_spread_s{custom}"))
     return [*rows, ("at", "($x{0.0}, $y{0.0}) m")]
 
 
-def _places(plan: FloorPlan) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Where source and start are (x, y) [m]."""
+def _mark_positions(plan: FloorPlan) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Positions (x, y) [m] of source and start."""
     return plan.source[:2], plan.start
 
 
 def _mark_columns(plan: FloorPlan) -> dict[str, Any]:
-    """Columns of the marks of source and start."""
-    x, y = zip(*_places(plan), strict=True)
+    """Data columns of the source and start marks."""
+    x, y = zip(*_mark_positions(plan), strict=True)
     return {
         "x": list(x),
         "y": list(y),

@@ -1,4 +1,4 @@
-"""The page of one tab: map, panels, player, and the look ten times a second for what is new."""
+"""The page of one tab: map, panels and player, updated ten times a second."""
 
 from collections.abc import Callable
 from typing import Any
@@ -26,19 +26,19 @@ from rssnav.explorer.training import Flight
 from rssnav.explorer.training_panel import TrainingPanel
 from rssnav.kernel_cache import tracer_cache
 
-LOOK_MS = 100
+POLL_MS = 100
 CELL_TAB, TRAINING_TAB = 1, 2
 PLAN_VIEW, SPACE_VIEW = "Plan", "3D"
 
 
-class News:
-    """Tells whether something is other than it was at the last look."""
+class Changes:
+    """Detects what has changed since the last update."""
 
     def __init__(self) -> None:
         self._seen: dict[str, tuple[object, ...]] = {}
 
     def of(self, name: str, *values: object) -> bool:
-        """Whether any of the values differs from those given under the name before."""
+        """Whether any of the values differs from the last ones given under the name."""
         before = self._seen.get(name)
         self._seen[name] = values
         if before is None or len(before) != len(values):
@@ -47,7 +47,7 @@ class News:
 
 
 class Page:
-    """Puts a session on a page and keeps it up to date.
+    """Shows a session on a page and keeps it up to date.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Page:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._news = News()
+        self._changes = Changes()
         self._compiles = not tracer_cache().n_compiled
         self._plan_panel = PlanPanel(session)
         self._cell_panel = CellPanel(session)
@@ -86,7 +86,7 @@ class Page:
         self.refresh()
 
     def template(self) -> pn.Template:
-        """Lay the parts out in the page's HTML."""
+        """Place the parts in the page's HTML."""
         template = pn.Template(
             PAGE,
             items={
@@ -101,12 +101,12 @@ class Page:
         return template
 
     def refresh(self) -> None:
-        """Show what is new in the session."""
+        """Show what has changed in the session."""
         session = self._session
         session.take_upload()
-        if self._news.of("building", session.plan.walls, session.settings.height_m):
+        if self._changes.of("building", session.plan.walls, session.settings.height_m):
             self._new_figure()
-        if self._news.of("plan", session.plan, session.settings):
+        if self._changes.of("plan", session.plan, session.settings):
             self._figure.show_marks(session.plan)
             self._plan_panel.show()
             self._name.object = plan_words(session.plan)
@@ -116,10 +116,10 @@ class Page:
         self._status.object = self._status_words()
 
     def _new_figure(self) -> None:
-        """Draw the plan from the beginning, as it is another or is cut at another height."""
+        """Redraw everything, because the plan or the height of the receivers is another."""
         session = self._session
-        self._news = News()
-        self._news.of("building", session.plan.walls, session.settings.height_m)
+        self._changes = Changes()
+        self._changes.of("building", session.plan.walls, session.settings.height_m)
         self._figure = MapFigure(
             session.plan,
             session.settings.height_m,
@@ -130,7 +130,7 @@ class Page:
         self._canvas.object = self._figure.model
 
     def _move(self, which: str, x: float, y: float) -> None:
-        """Move a mark to where it was dropped, or back to where it was."""
+        """Move a mark to where it was dropped, or back if it cannot be there."""
         session = self._session
         (session.move_source if which == "source" else session.move_start)(x, y)
         self._figure.show_marks(session.plan)
@@ -145,20 +145,20 @@ class Page:
             self._tabs.active = CELL_TAB
 
     def _show_map(self) -> None:
-        """Show a new map; the last one stays until then."""
+        """Show a new map; the last one stays until it is there."""
         latest, complete = self._session.maps.latest, self._session.complete_map is not None
-        if latest is not None and self._news.of("map", latest):
+        if latest is not None and self._changes.of("map", latest):
             self._figure.show_map(latest.radio_map)
-        if self._news.of("complete", complete, self._session.plan):
+        if self._changes.of("complete", complete, self._session.plan):
             self._downloads.show()
-            if complete and self._news.of("goal", latest):
+            if complete and self._changes.of("goal", latest):
                 self._training_panel.suggest_goal()
 
     def _show_paths(self) -> None:
         session = self._session
         found, finder = session.paths.latest, session.paths
         hidden = self._tabs.active == TRAINING_TAB
-        if not self._news.of("paths", session.cell, found, finder.busy, finder.problem, hidden):
+        if not self._changes.of("paths", session.cell, found, finder.busy, finder.problem, hidden):
             return
         centre = None
         if session.cell is not None:
@@ -175,8 +175,8 @@ class Page:
 
     def _show_training(self) -> None:
         training, complete = self._session.training, self._session.complete_map is not None
-        how_far = (0, False) if training is None else (training.steps.size, training.running)
-        if self._news.of("training", training, complete, *how_far):
+        progress = (0, False) if training is None else (training.steps.size, training.running)
+        if self._changes.of("training", training, complete, *progress):
             self._training_panel.show()
             self._player.follow(training)
             self._switch_tab(None)
@@ -187,27 +187,27 @@ class Page:
             self._figure.show_flight(flight.position, step, training.settings.agent)
 
     def _switch_tab(self, _event: Any) -> None:
-        """Show flights while the training is looked at, and paths otherwise."""
+        """Show flights while the training tab is open, and paths otherwise."""
         self._player.show(self._tabs.active == TRAINING_TAB)
         if not self._player.view.visible:
             self._figure.hide_flight()
 
     def _switch_view(self, event: Any) -> None:
-        """Show the plan or the building in three dimensions."""
+        """Show the plan, or the building in 3D."""
         self._space.visible = event.new == SPACE_VIEW
         self._canvas.visible = event.new == PLAN_VIEW
         self._show_space()
 
     def _show_space(self) -> None:
-        """Make the view in three dimensions, where it is looked at."""
+        """Update the 3D view if it is visible."""
         session = self._session
         if not self._space.visible:
             return
-        if self._news.of("space", session.plan, session.paths.latest):
+        if self._changes.of("space", session.plan, session.paths.latest):
             self._space.object = page_3d(session.plan, session.paths.latest)
 
     def _status_words(self) -> str:
-        """HTML of how far the map is, or what is wrong."""
+        """HTML of the map's progress, or of what is wrong."""
         session, maps = self._session, self._session.maps
         trouble = session.problem or maps.problem
         if trouble:
@@ -228,8 +228,8 @@ def page_of(session: Session, every: Callable[[Callable[[], None], int], object]
     ----------
     session : Session
     every : callable
-        Called with a function and a period [ms], as `panel.state.add_periodic_callback` is.
+        Called with a function and a period [ms], like `panel.state.add_periodic_callback`.
     """
     page = Page(session)
-    every(page.refresh, LOOK_MS)
+    every(page.refresh, POLL_MS)
     return page.template()

@@ -1,4 +1,4 @@
-"""Choose or upload a plan, and what its map is made with."""
+"""Choose or upload a plan, and set the parameters of its map."""
 
 from dataclasses import replace
 from typing import Any
@@ -16,7 +16,7 @@ GIGA = 1e9
 
 
 class PlanDropper(pn.widgets.FileDropper):
-    """A place to drop one file that fits into one message; what comes in pieces is not kept."""
+    """A drop area for one file that fits into one message; chunked files are not kept."""
 
     def _process_event(self, event: Any) -> None:
         if event.event_name == "delete_event" or event.data["total_chunks"] == 1:
@@ -78,7 +78,7 @@ class PlanPanel:
         self._showing = False
 
     def _names(self) -> list[str]:
-        """Built-in plans, and the plan that is open."""
+        """Built-in plans and the open plan."""
         return list(dict.fromkeys((*floorplans.builtin_names(), self._session.plan.name)))
 
     def _make_settings(self) -> None:
@@ -121,7 +121,7 @@ class PlanPanel:
 
 
 def _values(plan: FloorPlan, settings: MapSettings) -> dict[str, float]:
-    """What the inputs show, by their names."""
+    """Values of the inputs, by name."""
     return {
         "cell_size_m": settings.cell_size_m,
         "height_m": settings.height_m,

@@ -1,4 +1,4 @@
-"""The server: one application, a session a tab, and only those let in who should be."""
+"""The server: one application, a session per tab, and a list of allowed origins."""
 
 import asyncio
 import socket
@@ -24,20 +24,20 @@ _MESSAGE_OVERHEAD = 1_000_000
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """Where the explorer listens, and to whom.
+    """Address of the explorer, and who may open it.
 
     Attributes
     ----------
     port : int
-        0 for any that is free.
+        Port; 0 for any free one.
     address : str
-        Of the interface to listen on.
+        Address of the interface to listen on.
     origins : tuple of str
-        Further hosts, as HOST or HOST:PORT, under whose name browsers may open the page.
+        Further hosts, as HOST or HOST:PORT, under which browsers may open the page.
     show : bool
         Whether to open a browser.
     limits : Limits
-        On what is uploaded.
+        Limits on uploads, plans and maps.
     """
 
     port: int = 5006
@@ -53,7 +53,7 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
     Parameters
     ----------
     plan : FloorPlan
-        The one that a new tab begins with.
+        The plan of a new tab.
     settings : ServerSettings
     ready : callable
         Called with the page's address once the server is about to listen.
@@ -91,16 +91,16 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
 
 
 def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """Report what goes wrong between requests, but not that a tab was closed on a message."""
+    """Report errors between requests, except that a tab was closed during a message."""
     if not isinstance(context.get("exception"), WebSocketClosedError):
         loop.default_exception_handler(context)
 
 
 def host_names(address: str) -> tuple[str, ...]:
-    """Names under which a browser may reach an address; those of this machine for loopback.
+    """Names under which a browser may reach an address.
 
-    An address that stands for every interface has the machine's name and that of loopback;
-    other names must be allowed one by one.
+    The address of all interfaces has the machine's name and those of loopback; other names must be
+    allowed one by one.
     """
     try:
         parsed = ip_address(address)
@@ -114,12 +114,12 @@ def host_names(address: str) -> tuple[str, ...]:
 
 
 def with_port(origins: Sequence[str], port: int) -> list[str]:
-    """Add the port to hosts that are given without one."""
+    """Add the port to hosts without one."""
     return [name if ":" in name else f"{name}:{port}" for name in origins]
 
 
 def _free_port(address: str, port: int) -> int:
-    """Find out whether a port can be listened on; for 0, which one can."""
+    """Check that a port is free; for 0, find a free one."""
     try:
         family, _, _, _, place = socket.getaddrinfo(address, port, type=socket.SOCK_STREAM)[0]
         with closing(socket.socket(family, socket.SOCK_STREAM)) as probe:

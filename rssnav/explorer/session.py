@@ -1,4 +1,4 @@
-"""What one tab of the explorer holds: a plan, its map, a cell's paths, a training."""
+"""State of one tab of the explorer: a plan, its map, a cell's paths, a training."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,21 +23,21 @@ from rssnav.explorer.training import LiveTraining, TrainingSettings
 from rssnav.explorer.uploads import read_upload
 
 PLACE_DIGITS = 2
-"""A dragged source lands on whole centimetres."""
+"""A dragged source is rounded to centimetres."""
 
 Point = tuple[float, float]
 
 
 class Session:
-    """State of one tab; knows nothing of browsers.
+    """State of one tab, independent of the browser.
 
-    Methods that change it are called from one thread only. What takes time runs on others and
-    shows in `maps`, `paths` and `training`, or comes back through `take_upload`.
+    Methods that change it are called from one thread only. Long work runs on other threads; its
+    results appear in `maps`, `paths` and `training`, or through `take_upload`.
 
     Parameters
     ----------
     plan : FloorPlan
-        To begin with.
+        The first plan.
     limits : Limits, optional
     cache : MapCache, optional
         Shared with other sessions.
@@ -45,15 +45,15 @@ class Session:
     Attributes
     ----------
     plan : FloorPlan
-        With source and start where they are now.
+        The plan with its current source and start.
     settings : MapSettings
     maps : MapTracer
     paths : PathFinder
     training : LiveTraining or None
     cell : (int, int) or None
-        Indices (i_y, i_x) of the chosen cell.
+        Indices (i_y, i_x) of the selected cell.
     problem : str
-        Why the latest change was refused; empty if it was not.
+        Why the latest change was rejected; empty if it was not.
     """
 
     def __init__(
@@ -72,23 +72,23 @@ class Session:
         self.open_plan(plan)
 
     def close(self) -> None:
-        """Stop everything that runs for this tab."""
+        """Stop all work of this tab."""
         self.stop_training()
         for part in (self.maps, self.paths, self._reader):
             part.close()
 
     @property
     def grid(self) -> Grid:
-        """Cells of the plan; raises `PlanError` where the settings do not fit it."""
+        """Cells of the plan; raises `PlanError` if the settings do not fit it."""
         return self.settings.grid(self.plan)
 
     def open_plan(self, plan: FloorPlan) -> None:
-        """Take another plan, and trace its map.
+        """Open another plan, and trace its map.
 
         Raises
         ------
         PlanError
-            For a plan that is too large; the one before stays.
+            For a plan that is too large; the previous one stays open.
         """
         self.limits.check_plan(plan)
         height_m = self.settings.height_m
@@ -105,16 +105,16 @@ class Session:
         self.maps.request(self.plan, self.settings)
 
     def open_builtin(self, name: str) -> None:
-        """Take one of the plans that come with the project."""
+        """Open a built-in plan."""
         self.open_plan(floorplans.load(name))
 
     def upload(self, name: str, content: bytes) -> None:
-        """Begin to read an uploaded file; `take_upload` gives what became of it."""
+        """Start to read an uploaded file; `take_upload` opens the result."""
         self._uploaded = None
         self._reader.submit(partial(self._read, name, content))
 
     def take_upload(self) -> bool:
-        """Open an upload that has been read; return whether there was one, refused or not."""
+        """Open an upload that has been read; return whether there was one, rejected or not."""
         found, self._uploaded = self._uploaded, None
         if isinstance(found, FloorPlan):
             self._try(partial(self.open_plan, found))
@@ -131,11 +131,11 @@ class Session:
         self._uploaded = found
 
     def preview_source(self, x: float, y: float) -> None:
-        """Show the reflections of a source on the move, as far as it can be there."""
+        """Trace the reflections of a source that is being dragged, if it can be there."""
         self.maps.preview(self.plan, self.settings, (x, y, self.plan.source[2]))
 
     def move_source(self, x: float, y: float, z: float | None = None) -> None:
-        """Put the source somewhere [m] and trace the map; where it cannot be, it stays."""
+        """Move the source [m], if it can be there, and trace the map."""
         height_m = self.plan.source[2] if z is None else z
         source = (round(x, PLACE_DIGITS), round(y, PLACE_DIGITS), height_m)
         before = self.plan
@@ -146,14 +146,14 @@ class Session:
         self._find_paths()
 
     def move_start(self, x: float, y: float) -> None:
-        """Put the start at the cell centre nearest to a point [m]; where it cannot be, it stays."""
+        """Move the start to the cell centre nearest to a point [m], if it can be there."""
         before = self.plan
         self._try(lambda: self._replace_plan(replace(before, start=_nearest(self.grid, x, y))))
         if self.plan is not before:
             self._drop_training()
 
     def change_settings(self, settings: MapSettings) -> None:
-        """Trace the map with other settings; those that do not fit the plan are refused."""
+        """Trace the map with other settings; those that do not fit the plan are rejected."""
         if settings == self.settings:
             return
         self._try(partial(self._apply, settings))
@@ -167,7 +167,7 @@ class Session:
         self.maps.request(self.plan, settings)
 
     def choose_cell(self, x: float, y: float) -> None:
-        """Choose the cell that holds a point [m] and trace its paths; none outside the building."""
+        """Select the cell at a point [m] and trace its paths; none outside the building."""
         grid = self.grid
         i_x, i_y = (
             int(np.floor((at - centres[0]) / grid.cell_size_m + 0.5))
@@ -187,17 +187,17 @@ class Session:
 
     @property
     def complete_map(self) -> TracedMap | None:
-        """The whole map of the plan as it is now, marked with it; None until it is traced."""
+        """The complete map of the current plan, labelled with it; None until it is traced."""
         latest = self.maps.latest
         if latest is None or not latest.complete or latest.settings != self.settings:
             return None
         if latest.plan.source != self.plan.source:
             return None
-        marked = latest.radio_map.with_plan(floorplans.dumps(self.plan), self.plan.sha256)
-        return replace(latest, plan=self.plan, radio_map=marked)
+        labelled = latest.radio_map.with_plan(floorplans.dumps(self.plan), self.plan.sha256)
+        return replace(latest, plan=self.plan, radio_map=labelled)
 
     def train(self, settings: TrainingSettings) -> None:
-        """Begin a training in the complete map, in place of the one before."""
+        """Start a training in the complete map, replacing the previous one."""
         traced = self.complete_map
         if traced is None:
             self.problem = "the map is not complete yet; train when it is"
@@ -208,7 +208,7 @@ class Session:
         self.training.start()
 
     def stop_training(self) -> None:
-        """Stop the training; what it has learnt stays."""
+        """Stop the training; its results so far stay."""
         if self.training is not None:
             self.training.stop()
 
@@ -217,7 +217,7 @@ class Session:
         self.training = None
 
     def _snap_start(self) -> None:
-        """Put the start on a cell centre, where the plan allows it."""
+        """Move the start to a cell centre, if the plan allows it."""
         start = _nearest(self.grid, *self.plan.start)
         if start != self.plan.start:
             self._try(lambda: self._replace_plan(replace(self.plan, start=start)))
@@ -226,7 +226,7 @@ class Session:
         self.plan = plan
 
     def _try(self, change: Callable[[], None]) -> None:
-        """Change something, or say why it cannot be changed."""
+        """Apply a change, or set `problem` to why it is rejected."""
         try:
             change()
             self.problem = ""
@@ -235,9 +235,9 @@ class Session:
 
 
 def suggested_goal_dbm(radio_map: RadioMap, usual_dbm: float) -> float:
-    """Reading that a goal may ask for: the usual one, or what the strongest cells exceed [dBm]."""
-    lit = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
-    strongest = float(lit.max()) if lit.size else usual_dbm
+    """Goal level [dBm] for a map: the usual one, or one that its strongest cells exceed."""
+    covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
+    strongest = float(covered.max()) if covered.size else usual_dbm
     return usual_dbm if strongest > usual_dbm else float(np.floor(strongest - 1.0))
 
 

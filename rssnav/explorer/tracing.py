@@ -1,4 +1,4 @@
-"""Radio maps and paths of a session, traced on threads of their own."""
+"""Radio maps and paths of a session, traced in worker threads."""
 
 import time
 from collections import OrderedDict
@@ -33,16 +33,16 @@ Position = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class MapSettings:
-    """What is chosen for a map beside its plan.
+    """Parameters of a map other than its plan.
 
     Attributes
     ----------
     cell_size_m, height_m : float
         Side of a cell, and height of the receivers above the floor [m].
     max_reflections : int
-        On a path.
+        Maximum number of reflections on a path.
     power_dbm, frequency_hz : float
-        Of the source [dBm], [Hz].
+        Power [dBm] and carrier frequency [Hz] of the transmitter.
     """
 
     cell_size_m: float = CELL_SIZE_M
@@ -52,7 +52,7 @@ class MapSettings:
     frequency_hz: float = FREQUENCY_HZ
 
     def grid(self, plan: FloorPlan) -> Grid:
-        """Cells over a plan; raise `PlanError` where they would not lie between its slabs."""
+        """Cells over a plan; raise `PlanError` if they are not between floor and ceiling."""
         if not 0.0 < self.height_m < plan.height_m:
             raise PlanError(
                 f"receivers {self.height_m:g} m above the floor: choose a height above 0 and below "
@@ -62,22 +62,22 @@ class MapSettings:
         return Grid.over(plan.bounds, self.cell_size_m, self.height_m)
 
     def transmitter(self, plan: FloorPlan) -> Transmitter:
-        """A plan's source."""
+        """Transmitter at the plan's source."""
         return Transmitter(plan.source, self.power_dbm, self.frequency_hz)
 
 
 @dataclass(frozen=True, eq=False)
 class TracedMap:
-    """A map, and what it was traced for.
+    """A map, and the plan and settings it was traced for.
 
     Attributes
     ----------
     plan : FloorPlan
-        Its source is the map's; the start may have moved since.
+        Plan with the map's transmitter; the start may have moved since.
     settings : MapSettings
     radio_map : RadioMap
     complete : bool
-        Whether the paths with a diffraction are in it.
+        Whether it includes the paths with a diffraction.
     """
 
     plan: FloorPlan
@@ -112,17 +112,17 @@ class CellPaths:
 
     @cached_property
     def statistics(self) -> PathStatistics:
-        """What the paths amount to, for one receiver."""
+        """Statistics of the paths at the receiver."""
         return PathStatistics.of(self.paths, self.settings.power_dbm, 1)
 
 
 class MapCache:
-    """The latest complete maps, shared by all sessions; nobody writes to one.
+    """The latest complete maps, shared by all sessions and never modified.
 
     Parameters
     ----------
     size : int
-        Maps that are kept.
+        Maximum number of maps.
     """
 
     def __init__(self, size: int = 16) -> None:
@@ -131,12 +131,12 @@ class MapCache:
         self._maps: OrderedDict[tuple[str, MapSettings], TracedMap] = OrderedDict()
 
     def get(self, plan: FloorPlan, settings: MapSettings) -> TracedMap | None:
-        """Return the map of a plan, if it is kept."""
+        """Return the map of a plan; None if it is not in the cache."""
         with self._lock:
             return self._maps.get((plan.sha256, settings))
 
     def put(self, traced: TracedMap) -> None:
-        """Keep a map; the one kept longest makes room."""
+        """Add a map; the oldest is dropped when the cache is full."""
         with self._lock:
             self._maps[traced.plan.sha256, traced.settings] = traced
             while len(self._maps) > self._size:
@@ -159,14 +159,14 @@ class LatestScene:
 
 
 class MapTracer:
-    """Traces the newest map asked for: reflections at once, then everything.
+    """Traces the newest requested map: reflections first, then all paths.
 
     Attributes
     ----------
     latest : TracedMap or None
         Newest map; an older one stays until then.
     progress : float or None
-        Share of the work that is done, None when there is none.
+        Fraction of the work that is done; None when idle.
     problem : str
         Why the newest request failed; empty if it did not.
     """
@@ -181,17 +181,17 @@ class MapTracer:
         self._thread = NewestOnly("map")
 
     def request(self, plan: FloorPlan, settings: MapSettings) -> None:
-        """Trace a map in place of the one being traced."""
+        """Trace a map, replacing the one being traced."""
         self.progress = 0.0
         self._thread.submit(partial(self._trace, plan, settings))
 
     def preview(self, plan: FloorPlan, settings: MapSettings, source: Position) -> None:
-        """Trace the reflections of a source on the move [m], where it can be there."""
+        """Trace the reflections of a dragged source [m], if it can be there."""
         self.progress = 0.0
         self._thread.submit(partial(self._preview, plan, settings, source))
 
     def forget(self) -> None:
-        """Drop the map, as it belongs to another plan."""
+        """Drop the map of a plan that is closed."""
         self._thread.cancel()
         self.latest, self.progress, self.problem = None, None, ""
 
@@ -237,7 +237,7 @@ class MapTracer:
         return TracedMap(plan, settings, radio_map, complete)
 
     def _watch(self, complete: bool, ticket: Ticket) -> Callable[[int, int], None]:
-        """Follow a map's tracing: stop it when it is no longer wanted or takes too long."""
+        """Return a progress callback that stops a map when it is cancelled or takes too long."""
         ends_s = time.monotonic() + self._limits.map_s
 
         def progress(done: int, total: int) -> None:
@@ -257,12 +257,12 @@ class MapTracer:
 
 
 class PathFinder:
-    """Traces the paths to the newest cell asked for.
+    """Traces the paths to the newest requested cell.
 
     Attributes
     ----------
     latest : CellPaths or None
-        Paths to the newest cell that is done.
+        Paths to the newest finished cell.
     busy : bool
         Whether a cell is being traced.
     problem : str
@@ -277,7 +277,7 @@ class PathFinder:
         self._thread = NewestOnly("paths")
 
     def request(self, plan: FloorPlan, settings: MapSettings, receiver: Position) -> None:
-        """Trace the paths to a receiver [m] in place of the one before."""
+        """Trace the paths to a receiver [m], replacing the one being traced."""
         self.busy = True
         self._thread.submit(partial(self._trace, plan, settings, receiver))
 

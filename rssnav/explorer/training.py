@@ -1,4 +1,4 @@
-"""One realisation of Q-learning to watch while it learns."""
+"""One realisation of Q-learning that can be watched while it runs."""
 
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ LOGGER = logging.getLogger(__name__)
 KEPT_FLIGHTS = 200
 MAX_EPISODES = 20_000
 _CHUNK_EPISODES = 64
-_LOOK_S = 0.1  # what is flown between two looks at the clock
+_CHUNK_S = 0.1  # largest duration of a chunk at a limited pace
 
 
 @dataclass(frozen=True)
 class TrainingSettings:
-    """What is chosen for a training.
+    """Parameters of a training.
 
     Attributes
     ----------
     agent : {"rss", "location"}
     speed : int
-        Cells flown in a step along an axis.
+        Cells per step along an axis.
     episodes : int
     seed : int
     goal_rss_dbm : float
-        The RSS agent has found the source above this reading [dBm].
+        The RSS agent has found the source above this RSS [dBm].
     goal_distance_m : float
-        The location agent has found it when nearer than this [m].
+        The location agent has found the source within this distance [m].
     tolerance_db : float
-        A reading this near to a known state is that state [dB]; 0 makes every value a state.
+        A reading within this of a known state is that state [dB]; 0 makes every value a state.
     learning : QLearning
     pace : float
-        Most episodes a second, for those who want to watch.
+        Maximum number of episodes per second, to slow it down for watching.
     """
 
     agent: Literal["rss", "location"] = "rss"
@@ -62,7 +62,7 @@ class TrainingSettings:
     pace: float = math.inf
 
     def __post_init__(self) -> None:
-        """Check the number of episodes; the rest is checked by what it is for."""
+        """Check episodes and pace; agent and learning rule check the others."""
         if not 1 <= self.episodes <= MAX_EPISODES:
             raise ValueError(f"episodes: {self.episodes} must be 1 to {MAX_EPISODES}")
         if not self.pace > 0.0:
@@ -78,7 +78,7 @@ class TrainingSettings:
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """What the UAV flew in one episode.
+    """The flight of one episode.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Flight:
     position : (n + 1, 2) float64
         Cell centres [m], the start first.
     reached : bool
-        Whether it found the source; otherwise the episode was cut.
+        Whether it found the source; otherwise the episode was truncated.
     """
 
     episode: int
@@ -101,14 +101,14 @@ class Flight:
 
 
 def kept_episodes(episodes: int, kept: int = KEPT_FLIGHTS) -> NDArray[np.int64]:
-    """Episodes (n,), from 1 on, whose flights are kept: all, or ever wider apart.
+    """Episodes (n,), counted from 1, whose flights are kept: all, or geometrically spaced.
 
     Parameters
     ----------
     episodes : int
-        Episodes there will be.
+        Number of episodes.
     kept : int
-        Most flights to keep.
+        Maximum number of flights to keep.
     """
     if episodes <= kept:
         return np.arange(1, episodes + 1)
@@ -116,24 +116,24 @@ def kept_episodes(episodes: int, kept: int = KEPT_FLIGHTS) -> NDArray[np.int64]:
 
 
 class LiveTraining:
-    """A training on a thread of its own, which can be watched and stopped.
+    """A training in a worker thread that can be watched and stopped.
 
     Parameters
     ----------
     traced : TracedMap
-        What the UAV flies in.
+        Map that the UAV flies in.
     settings : TrainingSettings
 
     Attributes
     ----------
     flights : list of Flight
-        Flights of the episodes kept so far, in their order.
+        Flights of the episodes kept so far, in order.
     shortest_steps : int or None
-        Fewest steps to the goal, once known.
+        Fewest steps to the goal; None until known.
     converged_episode : int or None
-        Episode with the third equal flight in a row; None before.
+        Episode of convergence (third equal flight in a row); None before.
     problem : str
-        Why it could not go on; empty if it could.
+        Why it failed; empty if it did not.
     """
 
     def __init__(self, traced: TracedMap, settings: TrainingSettings) -> None:
@@ -149,20 +149,20 @@ class LiveTraining:
         self._thread = Thread(target=self._run, name="training", daemon=True)
 
     def start(self) -> None:
-        """Begin to train."""
+        """Start the training."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Tell it to stop; what it has learnt by then stays."""
+        """Ask it to stop; its results so far stay."""
         self._stop.set()
 
     def join(self, timeout_s: float | None = None) -> None:
-        """Wait for its end."""
+        """Wait until it ends."""
         self._thread.join(timeout_s)
 
     @property
     def running(self) -> bool:
-        """Whether it is still learning."""
+        """Whether it is still running."""
         return self._thread.is_alive()
 
     @property
@@ -193,9 +193,9 @@ class LiveTraining:
             self.flights.append(_latest_flight(learner, world))
 
     def _advance(self, learner: Learner, episode: int) -> bool:
-        """Fly up to an episode and log it; False when told to stop on the way."""
+        """Train up to an episode and store its steps; return False if stopped before."""
         counters, pace = learner.run.counters, self.settings.pace
-        chunk = int(max(1.0, min(_CHUNK_EPISODES, pace * _LOOK_S)))
+        chunk = int(max(1.0, min(_CHUNK_EPISODES, pace * _CHUNK_S)))
         while (flown := int(counters[common.EPISODE])) < episode:
             if self._stop.is_set():
                 return False
@@ -210,7 +210,7 @@ class LiveTraining:
 
 
 def _latest_flight(learner: Learner, world: GridWorld) -> Flight:
-    """Flight of the episode that a learner flew last."""
+    """Flight of a learner's last episode."""
     assert learner.trace is not None
     episode = int(learner.run.counters[common.EPISODE])
     steps, _, truncated = learner.run.episodes[episode - 1]

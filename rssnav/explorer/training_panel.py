@@ -19,17 +19,17 @@ from rssnav.pictures.style import AGENT_COLOURS, FAINT, INK
 
 MOST_POINTS = 2000
 SMOOTHED = 25
-"""Episodes that the line of the curve averages over."""
+"""Episodes that the curve's line is averaged over."""
 
 PACES = {"no limit": math.inf, "50": 50.0, "5": 5.0}
 AGENTS = {"RSS": "rss", "Location": "location"}
 _LEARNING = {
     "gamma": ("Discount \u03b3", 0.01),
-    "eta": ("Decay \u03b7 a step", 1e-5),
-    "alpha_max": ("First learning rate \u03b1", 0.05),
-    "epsilon_max": ("First exploration \u03b5", 0.05),
-    "initial_q": ("First Q", 10.0),
-    "goal_reward": ("Reward of the goal", 100.0),
+    "eta": ("Decay \u03b7 per step", 1e-5),
+    "alpha_max": ("Initial learning rate \u03b1", 0.05),
+    "epsilon_max": ("Initial exploration \u03b5", 0.05),
+    "initial_q": ("Initial Q", 10.0),
+    "goal_reward": ("Goal reward", 100.0),
 }
 
 
@@ -47,7 +47,7 @@ class TrainingPanel:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._refused = ""
+        self._rejected = ""
         self._make_inputs()
         self._train = self._button("Train", "primary", self._begin)
         self._stop = self._button("Stop", "default", lambda _event: session.stop_training())
@@ -72,20 +72,20 @@ class TrainingPanel:
         self.show()
 
     def suggest_goal(self) -> None:
-        """Set the goal to what the newest complete map has cells for."""
+        """Set the goal to a level that the newest complete map reaches."""
         traced = self._session.complete_map
         if traced is not None:
             goal = suggested_goal_dbm(traced.radio_map, RssAgent.terminal_dbm)
             self._inputs["goal_rss_dbm"].value = goal
 
     def show(self) -> None:
-        """Show how far the session's training is."""
+        """Show the progress of the session's training."""
         training = self._session.training
         running = training is not None and training.running
         self._train.disabled = running or self._session.complete_map is None
         self._stop.disabled = not running
         self._curve.show(training)
-        trouble = self._refused or (training.problem if training is not None else "")
+        trouble = self._rejected or (training.problem if training is not None else "")
         self._facts.object = problem(trouble) if trouble else _facts(training)
 
     def _button(self, name: str, kind: str, act: Callable[[Any], None]) -> Any:
@@ -100,7 +100,7 @@ class TrainingPanel:
             options=AGENTS, value="rss", stylesheets=WIDGETS, width=220
         )
         self._inputs: dict[str, Any] = {
-            "speed": whole(label="Speed [cells a step]", value=1, start=1, end=8, **options),
+            "speed": whole(label="Speed [cells per step]", value=1, start=1, end=8, **options),
             "episodes": whole(
                 label="Episodes", value=1000, start=1, end=MAX_EPISODES, step=100, **options
             ),
@@ -108,7 +108,7 @@ class TrainingPanel:
                 label="Goal: RSS above [dBm]", value=RssAgent.terminal_dbm, step=1.0, **options
             ),
             "goal_distance_m": number(
-                label="Goal: nearer than [m]",
+                label="Goal: within [m]",
                 value=LocationAgent.terminal_distance_m,
                 start=0.1,
                 step=0.5,
@@ -120,7 +120,7 @@ class TrainingPanel:
             ),
             "seed": whole(label="Seed", value=0, start=0, **options),
             "pace": pn.widgets.Select(
-                label="Episodes a second", options=PACES, value=math.inf, **options
+                label="Episodes per second", options=PACES, value=math.inf, **options
             ),
         }
         self._learning: dict[str, Any] = {
@@ -138,16 +138,16 @@ class TrainingPanel:
             self._inputs[name].visible = event.new == agent
 
     def _begin(self, _event: Any) -> None:
-        """Train with what the widgets say."""
+        """Start a training with the widgets' values."""
         values = {name: widget.value for name, widget in self._inputs.items()}
         try:
             learning = QLearning(**{name: widget.value for name, widget in self._learning.items()})
             settings = TrainingSettings(agent=self._agent.value, learning=learning, **values)
         except (TypeError, ValueError) as error:
-            self._refused = str(error)
+            self._rejected = str(error)
             self.show()
             return
-        self._refused = ""
+        self._rejected = ""
         self._session.train(settings)
 
 
@@ -205,7 +205,7 @@ class LearningCurve:
 
 
 def running_mean(values: NDArray[np.int32], width: int) -> NDArray[np.float64]:
-    """Mean of each value (n,) and up to width - 1 before it."""
+    """Mean of each value (n,) and up to width - 1 values before it."""
     total = np.concatenate(([0.0], np.cumsum(values, dtype=np.float64)))
     last = np.arange(1, len(total))
     first = np.maximum(last - width, 0)

@@ -1,8 +1,8 @@
 """Floor plans from uploaded files.
 
-Nothing an upload names is followed: TOML is parsed as text, and a file of another program is read
-on its own in an empty folder, by a separate process with limited time and memory. Kinds of files
-that consist of several, such as a ROS map and its picture, are not taken.
+References in an upload are not followed: TOML is parsed as text, and a file of another program is
+imported alone in an empty folder, by a separate process with limited time and memory. Formats of
+several files, such as a ROS map and its picture, are not accepted.
 """
 
 import subprocess
@@ -28,20 +28,20 @@ def read_upload(name: str, content: bytes, limits: Limits | None = None) -> Floo
     Parameters
     ----------
     name : str
-        What the browser calls the file; only its ending matters.
+        File name from the browser; only its suffix matters.
     content : bytes
     limits : Limits, optional
 
     Raises
     ------
     PlanError
-        When the file is too large, of another kind, or holds no plan that can be used.
+        When the file is too large, of another format, or holds no usable plan.
     """
     limits = limits or Limits()
     origin = _origin_of(name)
     if len(content) > limits.upload_bytes:
         raise PlanError(
-            f"{len(content)} bytes; the explorer takes files of at most {limits.upload_bytes}",
+            f"{len(content)} bytes; the explorer accepts files of at most {limits.upload_bytes}",
             origin=origin,
         )
     suffix = PurePosixPath(origin).suffix.lower()
@@ -54,7 +54,7 @@ def read_upload(name: str, content: bytes, limits: Limits | None = None) -> Floo
 
 
 def _origin_of(name: str) -> str:
-    """Name of a file for messages: printable, without folders, and not too long."""
+    """File name for messages: printable, without folders, and not too long."""
     last = name.replace("\\", "/").rsplit("/", 1)[-1]
     return "".join(c for c in last if c.isprintable())[-_NAME_LENGTH:] or "upload"
 
@@ -67,7 +67,7 @@ def _decoded(content: bytes, origin: str) -> str:
 
 
 def _read_toml(text: str, origin: str, limits: Limits) -> FloorPlan:
-    """Read a plan whose walls are counted first, as checking them takes time."""
+    """Read a plan; count its walls first, because checking them takes time."""
     try:
         limits.check_walls(_n_walls(tomllib.loads(text)), origin)
         return floorplans.loads(text, origin=origin)
@@ -78,7 +78,7 @@ def _read_toml(text: str, origin: str, limits: Limits) -> FloorPlan:
 
 
 def _n_walls(table: dict[str, Any]) -> int:
-    """Straight walls that a plan's table will give, as far as it is one."""
+    """Number of straight walls in a plan's table, which may be malformed."""
     walls = table.get("walls")
     rows = [row for row in walls if isinstance(row, dict)] if isinstance(walls, list) else []
     points = [row.get("points") for row in rows]
@@ -93,17 +93,17 @@ def _imported(suffix: str, content: bytes, limits: Limits) -> str:
         command = [sys.executable, "-m", "rssnav.explorer.import_worker"]
         try:
             done = subprocess.run(
-                [*command, str(file), str(plan), str(limits.reading_bytes)],
+                [*command, str(file), str(plan), str(limits.import_bytes)],
                 cwd=folder,
                 capture_output=True,
                 stdin=subprocess.DEVNULL,
-                timeout=limits.reading_s,
+                timeout=limits.import_s,
                 check=False,
             )
         except subprocess.TimeoutExpired as error:
             raise PlanError(
-                f"not read within {limits.reading_s:g} s: simplify the drawing, or convert it with "
-                "`rssnav plan import`",
+                f"not imported within {limits.import_s:g} s: simplify the drawing, or convert it "
+                "with `rssnav plan import`",
                 origin=file.name,
             ) from error
         if done.returncode != 0:
@@ -112,6 +112,6 @@ def _imported(suffix: str, content: bytes, limits: Limits) -> str:
 
 
 def _reason(stderr: str, folder: str) -> str:
-    """Last line that the reading process wrote, without the temporary folder."""
+    """Last line that the import worker wrote, without the temporary folder."""
     lines = [line for line in stderr.splitlines() if line.strip()]
     return lines[-1].replace(f"{folder}/", "") if lines else "the file could not be read"

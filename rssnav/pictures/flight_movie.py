@@ -1,7 +1,7 @@
-"""A trained UAV's flight as a moving picture: the flight over the map, and the RSS it reads.
+"""A trained UAV's flight as a film: the flight over the map, and its RSS readings.
 
-The flight is the final greedy one of a realisation, a frame a step (so a frame a second of flight).
-GIF is written by Pillow; MP4 needs ffmpeg.
+The flight is the final greedy one of a realisation, with one frame per step (one second of flight).
+Pillow writes GIF; MP4 needs ffmpeg.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from rssnav.results import TrainingResult, median_run
 SUFFIXES = (".gif", ".mp4")
 FRAMES_PER_S = 10
 HOLD_S = 1.5
-"""How long the last frame stays [s]."""
+"""Duration of the last frame [s]."""
 
 Frame = NDArray[np.uint8]
 Numbers = NDArray[np.int32]
@@ -52,11 +52,11 @@ _PALE = 0.75
 _READINGS_IN, _AROUND_IN = 1.0, 1.25
 _HIGHEST_MAP_IN = 4.5
 _GIF_COLOURS = 256
-_EVEN_SIZES = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]  # which the H.264 format asks for
+_EVEN_SIZES = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]  # required by H.264
 
 
 class MovieError(ValueError):
-    """A moving picture cannot be made; the message says what is missing."""
+    """A film cannot be made; the message says what is missing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,9 +68,9 @@ class Flight:
     agent : str
         Name of the agent.
     position : (n + 1, 2) float64
-        Where it is after each step, the start first [m].
+        Positions, the start first [m].
     rss_dbm : (n + 1,) float64
-        What it reads there [dBm].
+        RSS there [dBm].
     length_m : float
         Length of the flight [m].
     reached : bool
@@ -111,7 +111,7 @@ class Flight:
 
     @property
     def label(self) -> str:
-        """What the legend says of it."""
+        """Text in the legend."""
         end = "" if self.reached else ", does not arrive"
         return f"{self.agent} agent: {self.length_m:.1f} m in {len(self.position) - 1} s{end}"
 
@@ -120,15 +120,15 @@ def _index_of(result: TrainingResult, run: int) -> int:
     found = np.flatnonzero(result.run_ids == run)
     if found.size == 0:
         raise MovieError(
-            f"run {run}: the training holds the runs {result.run_ids[0]} to {result.run_ids[-1]}"
+            f"run {run}: the training has runs {result.run_ids[0]} to {result.run_ids[-1]}"
         )
     return int(found[0])
 
 
 class FlightScene:
-    """The picture of one or more flights, as they are after each step.
+    """Frames of one or more flights.
 
-    Map, axes and legend are drawn once, and the flights over a copy of them.
+    Map, axes and legend are drawn once, and the flights on a copy of them.
     """
 
     def __init__(self, plan: FloorPlan, radio_map: RadioMap, flights: Sequence[Flight]) -> None:
@@ -138,7 +138,7 @@ class FlightScene:
         draw_radio_map(plan, radio_map, above).set_alpha(_PALE)
         self._clock = above.set_title(f"{self.n_steps} s")
         self._trails = [draw_flight(above, f.position, f.agent) for f in flights]
-        _show_the_lower_beside_the_upper(self._trails)
+        _widen_lower_lines(self._trails)
         self._readings = [_draw_readings(below, flight) for flight in flights]
         self._uavs = [_draw_uav(above, flight) for flight in flights]
         _set_up_readings(below, flights, self.n_steps)
@@ -151,7 +151,7 @@ class FlightScene:
         self._background = self._canvas.copy_from_bbox(figure.bbox)
 
     def frame(self, step: int) -> Frame:
-        """Return the picture (height, width, 3) after a step; the last one after later steps."""
+        """Return the frame (height, width, 3) after a step, at most the last step."""
         self._clock.set_text(f"{min(step, self.n_steps)} s")
         parts = zip(self._flights, self._trails, self._readings, self._uavs, strict=True)
         for flight, trail, reading, uav in parts:
@@ -166,8 +166,8 @@ class FlightScene:
         return np.asarray(self._canvas.buffer_rgba())[:, :, :3].copy()
 
 
-def _show_the_lower_beside_the_upper(trails: Sequence[Line2D]) -> None:
-    """Make each line wider than those drawn after it, which may run along it."""
+def _widen_lower_lines(trails: Sequence[Line2D]) -> None:
+    """Make each line wider than those drawn over it, which may coincide with it."""
     for above, trail in enumerate(reversed(trails)):
         trail.set_linewidth(trail.get_linewidth() * (1.0 + 1.4 * above))
     for trail in trails[1:]:
@@ -175,7 +175,7 @@ def _show_the_lower_beside_the_upper(trails: Sequence[Line2D]) -> None:
 
 
 def _panels(plan: FloorPlan) -> tuple[Figure, tuple[Axes, Axes]]:
-    """Return a figure with room for the map above and the readings below."""
+    """Return a figure with a panel for the map above one for the readings."""
     x_min, y_min, x_max, y_max = plan.bounds
     map_in = min((PAGE_IN - 0.6) * (y_max - y_min) / (x_max - x_min), _HIGHEST_MAP_IN)
     height_in = map_in + _READINGS_IN + _AROUND_IN
@@ -224,7 +224,7 @@ def save_flight_movie(
     frames_per_s: int = FRAMES_PER_S,
     progress: Progress | None = None,
 ) -> tuple[Flight, ...]:
-    """Write the flights of one or more trainings as a moving picture, and return them.
+    """Write the flights of one or more trainings as a film, and return them.
 
     Parameters
     ----------
@@ -234,13 +234,13 @@ def save_flight_movie(
     results : sequence of TrainingResult
         Trainings on this plan, one flight each.
     path : str or Path
-        A .gif or .mp4; written whole or not at all.
+        A .gif or .mp4; written atomically.
     run : int, optional
         Number of the realisation; by default the one of median length.
     frames_per_s : int
-        Steps shown in a second.
+        Steps shown per second.
     progress : callable, optional
-        Called with the number of frames drawn and of all.
+        Called as ``progress(frames_done, frames)``.
 
     Raises
     ------
@@ -262,7 +262,7 @@ def save_flight_movie(
 
 
 def _counted(frames: Iterable[Frame], total: int, progress: Progress | None) -> Iterator[Frame]:
-    """Hand frames on, and tell how many there were."""
+    """Pass frames on, and report their number."""
     for done, frame in enumerate(frames, 1):
         if progress is not None:
             progress(done, total)
@@ -270,7 +270,7 @@ def _counted(frames: Iterable[Frame], total: int, progress: Progress | None) -> 
 
 
 def _write_gif(path: Path, frames: Iterable[Frame], frames_per_s: int) -> None:
-    """Write all frames in the colours of the last one, which has all that matter."""
+    """Write all frames in the palette of the last one, which has all relevant colours."""
     numbered = [_colour_numbers(frame) for frame in frames]
     palette = _palette(numbered[-1])
     nearest = _nearest(palette, numbered)
@@ -282,7 +282,7 @@ def _write_gif(path: Path, frames: Iterable[Frame], frames_per_s: int) -> None:
 
 
 def _colour_numbers(frame: Frame) -> Numbers:
-    """Return each pixel's colour as one number (height, width): red, green and blue a byte each."""
+    """Return each pixel's colour as a number (height, width) of three bytes, red highest."""
     red, green, blue = np.moveaxis(frame.astype(np.int32), -1, 0)
     return red << 16 | green << 8 | blue
 
@@ -293,10 +293,7 @@ def _colours(numbers: Numbers) -> Frame:
 
 
 def _palette(numbers: Numbers) -> Frame:
-    """Return the 256 colours (256, 3) that a GIF can have: those with a meaning, then the others.
-
-    Of the others, those that fill most of the picture.
-    """
+    """Return the 256 colours (256, 3) of a GIF: those with a meaning, then the most frequent."""
     found, counts = np.unique(numbers, return_counts=True)
     meant = [to_rgb(name) for name in (SOURCE, INK, OTHER_AGENT, *AGENT_COLOURS.values())]
     exact = np.rint(255.0 * np.array(meant)).astype(np.uint8)
@@ -304,7 +301,7 @@ def _palette(numbers: Numbers) -> Frame:
 
 
 def _nearest(palette: Frame, frames: Sequence[Numbers]) -> NDArray[np.uint8]:
-    """Return the index of the nearest colour in a palette, for each colour number of the frames."""
+    """Return the palette index (2**24,) nearest to each colour number in the frames."""
     used = np.zeros(1 << 24, dtype=np.bool_)
     for numbers in frames:
         used[numbers] = True
@@ -315,7 +312,7 @@ def _nearest(palette: Frame, frames: Sequence[Numbers]) -> NDArray[np.uint8]:
 
 
 def _write_mp4(path: Path, frames: Iterable[Frame], frames_per_s: int) -> None:
-    """Hand frames to ffmpeg, by way of a figure that shows nothing else."""
+    """Encode frames with ffmpeg, through a figure that shows nothing else."""
     first, *others = frames
     height, width = first.shape[:2]
     screen = Figure((width / _DPI, height / _DPI), dpi=_DPI)
@@ -330,7 +327,7 @@ def _write_mp4(path: Path, frames: Iterable[Frame], frames_per_s: int) -> None:
 def _check_format(path: Path) -> None:
     suffix = path.suffix.lower()
     if suffix not in _WRITERS:
-        raise MovieError(f"{path}: the suffix names the format; give one of {', '.join(_WRITERS)}")
+        raise MovieError(f"{path}: the suffix names the format; use one of {', '.join(_WRITERS)}")
     if suffix == ".mp4" and not FFMpegWriter.isAvailable():
         raise MovieError(
             f"{path}: an MP4 needs the program ffmpeg, which is not on the PATH; install it, or "
@@ -346,5 +343,5 @@ def _check_plan(plan: FloorPlan, results: Sequence[TrainingResult]) -> None:
         if result.world.plan_sha256 != plan.sha256:
             raise ResultFileError(
                 f"the training is of another plan ({result.world.plan_name!r}) than "
-                f"{plan.name!r}, or of an earlier state of it; train again"
+                f"{plan.name!r}, or of an earlier version of it; train again"
             )

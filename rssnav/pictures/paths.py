@@ -1,4 +1,4 @@
-"""Paths drawn in their plan, coloured by power: from above, or in three dimensions."""
+"""Paths in their plan, coloured by power: from above, or in 3D."""
 
 import textwrap
 from pathlib import Path
@@ -22,7 +22,7 @@ from rssnav.pictures.radio_map import draw_walls, plan_height_in, plan_width_in,
 from rssnav.pictures.style import INK, draw_source, save_picture, styled
 
 COLOUR_MAP = "plasma_r"
-"""Strong paths are dark, weak ones fade: on a light ground the strong ones must stand out."""
+"""Strong paths are dark: they must stand out on a light background."""
 
 RECEIVER = "#0b8f5a"
 WALL_OPACITY = 0.35
@@ -37,7 +37,7 @@ def path_lines(paths: Paths) -> list[NDArray[np.float64]]:
 
 
 def power_scale(powers_dbm: NDArray[np.float64]) -> Normalize:
-    """Scale from the weakest to the strongest of powers [dBm], 1 dB at least."""
+    """Scale from the weakest to the strongest power [dBm], at least 1 dB wide."""
     finite = powers_dbm[np.isfinite(powers_dbm)]
     high = float(finite.max(initial=-np.inf)) if len(finite) else 0.0
     low = float(finite.min(initial=np.inf)) if len(finite) else -1.0
@@ -51,11 +51,11 @@ def draw_paths(plan: FloorPlan, paths: Paths, power_dbm: float, ax: Axes) -> Sca
     ----------
     plan : FloorPlan
     paths : Paths
-        To one receiver, strongest first.
+        Paths to one receiver, strongest first.
     power_dbm : float
         Transmit power [dBm].
     ax : matplotlib.axes.Axes
-        Its axes become x and y [m].
+        Axes of the drawing, which become x and y [m].
 
     Returns
     -------
@@ -87,7 +87,7 @@ def draw_paths(plan: FloorPlan, paths: Paths, power_dbm: float, ax: Axes) -> Sca
 def _draw_interactions(
     paths: Paths, powers: NDArray[np.float64], scale: Normalize, ax: Axes
 ) -> None:
-    """Mark where paths are reflected and diffracted, in the colours of their powers."""
+    """Mark reflections and diffractions in the colours of the paths' powers."""
     for kind, (mark, label) in MARKS.items():
         path, place = np.nonzero(paths.interactions == kind)
         if not len(path):
@@ -120,7 +120,7 @@ def paths_figure(plan: FloorPlan, paths: Paths, power_dbm: float, title: str) ->
 def save_paths_picture(
     plan: FloorPlan, paths: Paths, power_dbm: float, title: str, path: str | Path
 ) -> None:
-    """Draw paths into a file, whole or not at all.
+    """Draw paths into a file, written atomically.
 
     Parameters
     ----------
@@ -129,8 +129,8 @@ def save_paths_picture(
     title : str
         Written above the picture.
     path : str or Path
-        Its suffix names the format: .png, .svg or .pdf from above; .glb or .html, a page to turn
-        that needs no network, in three dimensions.
+        Its suffix names the format: .png, .svg or .pdf from above; .glb or .html (an interactive
+        page that needs no network) in 3D.
     """
     if Path(path).suffix.lower() in (".glb", ".html"):
         _save_scene(plan, paths, power_dbm, title, path)

@@ -1,7 +1,7 @@
 """A radio map as a picture: RSS in colour over the plan's walls, source and start.
 
-Cells without a path are hatched, so that they cannot be taken for a weak signal. Dark walls are
-solid at the receivers' height; light ones, lintels and low walls, leave it free.
+Cells without a path are hatched, so that they are not mistaken for a weak signal. Walls that are
+solid at the receivers' height are dark; openings and low walls are light.
 """
 
 import textwrap
@@ -35,7 +35,7 @@ from rssnav.pictures.style import (
 NO_PATH = "#e3e3e3"
 HATCH = "xxxx"
 HATCH_COLOUR = "#a6a6a6"
-"""Lighter than any wall, so that walls between dark rooms stay visible."""
+"""Lighter than any wall, so that walls between rooms without a path stay visible."""
 
 FREE_WALL = "#b9b3a8"
 LONG_M = 40.0
@@ -58,26 +58,26 @@ def draw_radio_map(
     Parameters
     ----------
     plan : FloorPlan
-        The plan that the map was made for.
+        The map's plan.
     radio_map : RadioMap
-        Its power-sum RSS is drawn.
+        Map whose power-sum RSS is drawn.
     ax : matplotlib.axes.Axes
-        Where; its axes become x and y [m].
+        Axes of the drawing, which become x and y [m].
     rss_range_dbm : (float, float), optional
-        RSS [dBm] of the darkest and of the lightest colour; that of the map by default.
+        RSS [dBm] of the darkest and the lightest colour; the map's range by default.
 
     Returns
     -------
     matplotlib.image.AxesImage
         For ``figure.colorbar(image, label="RSS [dBm]")``.
     """
-    dark = ~np.isfinite(radio_map.rss_dbm)
-    low, high = rss_range_dbm or _range_of(radio_map.rss_dbm[~dark])
-    rss_dbm = np.ma.masked_array(radio_map.rss_dbm, dark)
+    uncovered = ~np.isfinite(radio_map.rss_dbm)
+    low, high = rss_range_dbm or _range_of(radio_map.rss_dbm[~uncovered])
+    rss_dbm = np.ma.masked_array(radio_map.rss_dbm, uncovered)
     image = draw_cells(ax, radio_map.grid, rss_dbm, norm=Normalize(low, high))
     image.set_gid("rss")
-    if dark.any():
-        _draw_dark_cells(radio_map.grid, dark, ax)
+    if uncovered.any():
+        _hatch_cells(radio_map.grid, uncovered, ax)
     draw_walls(plan, radio_map.grid.height_m, ax)
     draw_source(ax, plan)
     draw_start(ax, plan)
@@ -123,23 +123,23 @@ def save_map_picture(
     plan, radio_map, width_in
         As for `map_figure`.
     path : str or Path
-        Its suffix names the format: .png, .svg or .pdf. Written whole or not at all.
+        Its suffix names the format: .png, .svg or .pdf. Written atomically.
     """
     save_picture(map_figure(plan, radio_map, width_in=width_in), path)
 
 
 def _range_of(rss_dbm: NDArray[np.float64]) -> tuple[float, float]:
-    """Range of the readings (n,) [dBm], or one of 1 dB where there is none."""
+    """Range of RSS values (n,) [dBm]; one of 1 dB if there are none."""
     if rss_dbm.size == 0:
         return -1.0, 0.0
     return float(rss_dbm.min()), float(rss_dbm.max())
 
 
-def _draw_dark_cells(grid: Grid, dark: NDArray[np.bool_], ax: Axes) -> None:
+def _hatch_cells(grid: Grid, uncovered: NDArray[np.bool_], ax: Axes) -> None:
     """Hatch the cells (n_y, n_x) without a path."""
     half = 0.5 * grid.cell_size_m
     square = half * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-    centres = grid.points()[dark.ravel(), :2]
+    centres = grid.points()[uncovered.ravel(), :2]
     cells = PolyCollection(
         [*(centres[:, None] + square)],
         facecolors=NO_PATH,
@@ -153,7 +153,7 @@ def _draw_dark_cells(grid: Grid, dark: NDArray[np.bool_], ax: Axes) -> None:
 
 
 def draw_walls(plan: FloorPlan, height_m: float, ax: Axes) -> None:
-    """Draw all walls lightly, and over them in ink what is solid at a height [m]."""
+    """Draw all walls lightly, and those that are solid at a height [m] in black."""
     whole = np.array([(wall.start, wall.end) for wall in plan.walls])
     layers: Sequence[tuple[str, NDArray[np.float64], str, float]] = (
         ("walls", whole, FREE_WALL, 0.7),
@@ -168,7 +168,7 @@ def draw_walls(plan: FloorPlan, height_m: float, ax: Axes) -> None:
 
 
 def set_limits(plan: FloorPlan, ax: Axes) -> None:
-    """Show the whole plan, with a narrow margin and no frame."""
+    """Set the limits to the plan with a narrow margin, and remove the frame."""
     x_min, y_min, x_max, y_max = plan.bounds
     margin = 0.01 * max(x_max - x_min, y_max - y_min)
     ax.set_xlim(x_min - margin, x_max + margin)
@@ -183,22 +183,22 @@ def plan_width_in(plan: FloorPlan) -> float:
 
 
 def plan_height_in(plan: FloorPlan, width_in: float, lines: int) -> float:
-    """Height of a figure [inch] that its plan and some lines of text fill."""
+    """Height of a figure [inch] with a plan and some lines of text."""
     x_min, y_min, x_max, y_max = plan.bounds
     drawn_in = (width_in - _BESIDE_IN) * (y_max - y_min) / (x_max - x_min)
     return drawn_in + _BELOW_IN + lines * _LINE_IN
 
 
 def _title(plan: FloorPlan, radio_map: RadioMap) -> str:
-    source = radio_map.transmitter
+    transmitter = radio_map.transmitter
     return (
-        f"{plan.name}: {source.power_dbm:g} dBm at {source.frequency_hz * 1e-9:g} GHz, "
+        f"{plan.name}: {transmitter.power_dbm:g} dBm at {transmitter.frequency_hz * 1e-9:g} GHz, "
         f"received {radio_map.grid.height_m:g} m above the floor"
     )
 
 
 def _keys(plan: FloorPlan, radio_map: RadioMap) -> list[Line2D | Patch]:
-    """Explain walls and hatching."""
+    """Legend entries of walls and hatching."""
     height_m = radio_map.grid.height_m
     keys: list[Line2D | Patch] = [
         Line2D([], [], color=INK, lw=0.9, label=f"wall at {height_m:g} m")

@@ -1,9 +1,9 @@
-"""The look of all figures: sizes, fonts, colours, and the parts that several of them share.
+"""The style of all figures: sizes, fonts, colours, and shared parts.
 
-Figures are made with matplotlib's objects (no pyplot, no global figure), at the widths of a
-two-column IEEE page, in 8 pt type. An agent has the same colour in every figure; maps are in
-viridis. Both stay apart for colour-blind readers and in print. PDF embeds its fonts, SVG keeps its
-text as text. `chosen_style` lays a matplotlib style over all that.
+Figures use matplotlib's object interface (no pyplot, no global figure), the widths of a two-column
+IEEE page, and 8 pt type. An agent has the same colour in every figure; maps use viridis. The
+colours can be told apart by colour-blind readers and in print. PDF embeds its fonts, SVG keeps text
+as text. `chosen_style` applies a matplotlib style on top.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ _CHOSEN: ContextVar[str | None] = ContextVar("matplotlib style", default=None)
 
 @contextmanager
 def chosen_style(style: str | None) -> Generator[None]:
-    """Draw all figures of a block in a style of the user's, laid over the project's own.
+    """Context manager: apply a user's matplotlib style on top of the project's.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def chosen_style(style: str | None) -> Generator[None]:
     Raises
     ------
     ValueError
-        For a style that there is not.
+        For a style that does not exist.
     """
     if style is not None:
         check_style(style)
@@ -128,7 +128,7 @@ def chosen_style(style: str | None) -> Generator[None]:
 
 
 def check_style(style: str) -> None:
-    """Raise ValueError unless matplotlib knows a style; nothing is fetched from a network."""
+    """Raise ValueError unless matplotlib knows a style; URLs are rejected."""
     try:
         if "://" in style:
             raise OSError
@@ -143,14 +143,14 @@ def check_style(style: str) -> None:
 
 @contextmanager
 def drawing() -> Generator[None]:
-    """Set matplotlib up for drawing or writing a figure: the project's style, then the chosen."""
+    """Context manager: apply the project's style, then the chosen one."""
     style = _CHOSEN.get()
     with rc_context(STYLE), nullcontext() if style is None else context(style):
         yield
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Decorate a function that draws a figure, so that it draws in the project's style."""
+    """Decorate a function that draws a figure, to draw it in the project's style."""
 
     @wraps(draw)
     def draw_in_style(*args: P.args, **kwargs: P.kwargs) -> Figure:
@@ -161,7 +161,7 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
 
 def new_figure(width_in: float, height_in: float, *, maps: bool = False) -> Figure:
-    """Return an empty figure whose axes never overlap; ``maps`` for a grid of true-scale maps."""
+    """Return an empty figure whose axes do not overlap; ``maps`` for a grid of maps to scale."""
     layout = "compressed" if maps else "constrained"
     return Figure(figsize=(width_in, height_in), layout=layout)
 
@@ -175,7 +175,7 @@ def png_bytes(figure: Figure, dpi: float = DPI) -> bytes:
 
 
 def save_picture(figure: Figure, path: str | Path) -> None:
-    """Write a figure to a file (.png, .svg or .pdf), whole or not at all."""
+    """Write a figure to a file (.png, .svg or .pdf) atomically."""
     with atomic_write(path) as beside, drawing():
         figure.savefig(beside, dpi=DPI, metadata=_NO_DATE[beside.suffix.lower()])
 
@@ -185,7 +185,7 @@ def save_figure(figure: Figure, stem: Path) -> bytes:
     stem.parent.mkdir(parents=True, exist_ok=True)
     png = png_bytes(figure)
     stem.with_name(f"{stem.name}.png").write_bytes(png)
-    figure.set_layout_engine("none")  # the places found for the PNG hold for the PDF too
+    figure.set_layout_engine("none")  # the PDF has the layout of the PNG
     with drawing():
         figure.savefig(stem.with_name(f"{stem.name}.pdf"), metadata={"CreationDate": None})
     return png
@@ -217,11 +217,11 @@ def draw_cells(
     ----------
     ax : matplotlib.axes.Axes
     grid : Grid
-        Where the cells lie.
+        Position and size of the cells.
     values : (n_y, n_x) float64, may be masked
-        One value per cell.
+        Value of each cell.
     norm : matplotlib.colors.Normalize
-        From values to colours.
+        Scale from values to colours.
     """
     half = grid.cell_size_m / 2
     extent = (grid.x[0] - half, grid.x[-1] + half, grid.y[0] - half, grid.y[-1] + half)
@@ -236,7 +236,7 @@ def draw_cells(
 def draw_colour_bar(
     figure: Figure, panels: Sequence[Axes], norm: Normalize, label: str, alpha: float = 1.0
 ) -> None:
-    """Draw the scale that some panels share on their right; the least values lie below it."""
+    """Draw the colour bar of several panels on their right; the lowest values lie below it."""
     bar = figure.colorbar(
         ScalarMappable(norm, MAP_COLOURS),
         ax=panels,
@@ -248,10 +248,10 @@ def draw_colour_bar(
     bar.set_label(label)
 
 
-def draw_walls(ax: Axes, plan: FloorPlan, height_m: float, colour: str = INK) -> None:
+def draw_solid_walls(ax: Axes, plan: FloorPlan, height_m: float) -> None:
     """Draw the walls that are solid at a height [m]."""
     walls = LineCollection(
-        list(plan.solid_segments(height_m)), colors=colour, linewidths=0.7, capstyle="round"
+        list(plan.solid_segments(height_m)), colors=INK, linewidths=0.7, capstyle="round"
     )
     walls.set_gid("walls")
     walls.set_clip_on(False)
@@ -293,12 +293,12 @@ def draw_start(ax: Axes, plan: FloorPlan) -> Line2D:
 
 
 def agent_colour(agent: str) -> str:
-    """Colour of an agent, by its name; all agents but the paper's share one."""
+    """Colour of an agent, by its name; agents other than the paper's share one."""
     return AGENT_COLOURS.get(agent, OTHER_AGENT)
 
 
 def draw_flight(ax: Axes, positions: NDArray[np.float64], agent: str) -> Line2D:
-    """Draw a flight through positions (n, 2) [m], in its agent's colour on a white edge."""
+    """Draw a flight through positions (n, 2) [m], in its agent's colour with a white outline."""
     (line,) = ax.plot(
         positions[:, 0],
         positions[:, 1],

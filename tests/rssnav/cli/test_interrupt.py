@@ -58,5 +58,5 @@ def test_interrupted_training_keeps_its_finished_runs(tmp_path) -> None:
     assert 0 < kept < 100_000
     assert errors.splitlines()[-1] == (
         f"rssnav: interrupted; {kept} of 100000 runs are finished and kept in {result}; the same "
-        "command goes on from there"
+        "command continues from there"
     )

@@ -174,7 +174,7 @@ def test_click_a_cell_for_its_paths(tab, tmp_path) -> None:
 
 def test_train_watch_stop_and_play(tab) -> None:
     tab.choose("Training")
-    tab.page.get_by_label("Episodes a second").select_option("50")
+    tab.page.get_by_label("Episodes per second").select_option("50")
     tab.page.get_by_role("button", name="Location").click()
     train, stop = (tab.page.get_by_role("button", name=name) for name in ("Train", "Stop"))
     train.click()

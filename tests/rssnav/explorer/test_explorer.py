@@ -22,10 +22,10 @@ from raytrace import RadioMap, TraceConfig
 from rssnav.explorer.background import NewestOnly, SupersededError
 from rssnav.explorer.cell_panel import page_3d, strongest
 from rssnav.explorer.downloads import figure_file, file_name, map_file, plan_file
-from rssnav.explorer.flight_player import FRAMES, first_frames, place_of
+from rssnav.explorer.flight_player import FRAMES, first_frames, flight_at
 from rssnav.explorer.limits import Limits
 from rssnav.explorer.map_figure import MapFigure, path_colours
-from rssnav.explorer.page import News
+from rssnav.explorer.page import Changes
 from rssnav.explorer.server import host_names, with_port
 from rssnav.explorer.session import Session, suggested_goal_dbm
 from rssnav.explorer.tracing import MapCache, MapSettings
@@ -63,7 +63,7 @@ def session() -> Iterator[Session]:
     opened.close()
 
 
-def test_newest_job_takes_the_place_of_older_ones() -> None:
+def test_newest_job_takes_the_flight_at_older_ones() -> None:
     done, begun, thread = [], Event(), NewestOnly("test")
 
     def endless(ticket) -> None:
@@ -249,10 +249,10 @@ def test_a_file_of_another_program_is_read() -> None:
 
 def test_a_reader_gets_no_more_than_its_time_and_memory() -> None:
     content = dumps_geojson(FLAT).encode()
-    with pytest.raises(PlanError, match=r"not read within 0\.01 s"):
-        read_upload("flat.geojson", content, Limits(reading_s=0.01))
+    with pytest.raises(PlanError, match=r"not imported within 0\.01 s"):
+        read_upload("flat.geojson", content, Limits(import_s=0.01))
     with pytest.raises(PlanError):
-        read_upload("flat.geojson", content, Limits(reading_bytes=30_000_000))
+        read_upload("flat.geojson", content, Limits(import_bytes=30_000_000))
 
 
 def test_walls_of_an_upload_are_counted_before_they_are_checked() -> None:
@@ -354,9 +354,9 @@ def test_frames_lead_through_every_flight() -> None:
     steps = [0, 3, 500]
     first = first_frames(steps)
     assert first.tolist() == [0, 1, 5, 5 + FRAMES]
-    places = [place_of(first, frame) for frame in range(first[-1])]
+    places = [flight_at(first, frame) for frame in range(first[-1])]
     assert [index for index, _ in places] == [0, *[1] * 4, *[2] * FRAMES]
-    shown = [round(share * steps[index]) for index, share in places]
+    shown = [round(fraction * steps[index]) for index, fraction in places]
     assert shown[:5] == [0, 0, 1, 2, 3]
     assert shown[5] == 0
     assert shown[-1] == 500
@@ -410,12 +410,12 @@ def test_a_mark_tells_where_it_was_dropped_and_comes_back_when_deleted() -> None
     assert len(told) == 1
 
 
-def test_news_compares_with_the_last_look() -> None:
-    news = News()
-    assert news.of("a", 1, None)
-    assert not news.of("a", 1, None)
-    assert news.of("a", 2, None)
-    assert news.of("b", 2, None)
+def test_changes_are_those_since_the_last_update() -> None:
+    changes = Changes()
+    assert changes.of("a", 1, None)
+    assert not changes.of("a", 1, None)
+    assert changes.of("a", 2, None)
+    assert changes.of("b", 2, None)
 
 
 @pytest.mark.parametrize(

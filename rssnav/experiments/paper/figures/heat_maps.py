@@ -18,9 +18,9 @@ from rssnav.pictures.style import (
     MAP_COLOURS,
     PAGE_IN,
     draw_cells,
+    draw_solid_walls,
     draw_source,
     draw_start,
-    draw_walls,
     label_panel,
     styled,
 )
@@ -84,7 +84,7 @@ def draw_map(ax: Axes, scenario: Scenario, norm: Normalize) -> AxesImage:
     radio_map, plan = scenario.radio_map, scenario.plan
     reached = np.ma.masked_invalid(radio_map.rss_dbm)
     image = draw_cells(ax, radio_map.grid, reached, norm=norm)
-    draw_walls(ax, plan, radio_map.grid.height_m)
+    draw_solid_walls(ax, plan, radio_map.grid.height_m)
     draw_source(ax, plan)
     draw_start(ax, plan)
     return image

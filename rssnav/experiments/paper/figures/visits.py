@@ -13,9 +13,9 @@ from rssnav.pictures.style import (
     PAGE_IN,
     draw_cells,
     draw_colour_bar,
+    draw_solid_walls,
     draw_source,
     draw_start,
-    draw_walls,
     label_panel,
     new_figure,
     styled,
@@ -45,7 +45,7 @@ def draw(data: PaperData) -> Figure:
             visited = np.ma.masked_equal(shown, 0.0)
             draw_cells(ax, scenario.radio_map.grid, visited, norm=norm)
             ax.set_facecolor(_UNVISITED)
-            draw_walls(ax, scenario.plan, scenario.radio_map.grid.height_m)
+            draw_solid_walls(ax, scenario.plan, scenario.radio_map.grid.height_m)
             draw_source(ax, scenario.plan)
             draw_start(ax, scenario.plan)
             letter = "abcdef"[row * len(_ORDER) + column]
