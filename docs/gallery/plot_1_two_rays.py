@@ -2,10 +2,10 @@
 Two rays over a conducting floor
 ================================
 
-Over flat ground two rays reach a receiver: the direct one and the one that the ground reflects.
-Their sum fades where they cancel, and beyond the last maximum falls with the fourth power of the
-distance. This hall has walls and a ceiling that absorb everything, so just those two rays are
-left, and the tracer must agree with the formula.
+Over flat ground two rays reach a receiver: the direct one and the ground reflection. Their sum
+fades where they cancel. Beyond the last maximum, the power falls with the fourth power of the
+distance. This hall has absorbing walls and an absorbing ceiling, so only these two rays
+remain, and the tracer must agree with the formula.
 """
 
 import matplotlib.pyplot as plt
@@ -35,8 +35,8 @@ thickness_m = 0.1
 """)
 
 # %%
-# Trace to receivers 1.5 m above the floor, from 5 m to 580 m away. Isotropic antennas keep the
-# formula short.
+# Trace to receivers 1.5 m above the floor, at distances from 5 m to 580 m. Isotropic antennas
+# keep the formula short.
 distance_m = np.geomspace(5.0, 580.0, 1500)
 height_m = 1.5
 receivers = np.column_stack(
@@ -54,9 +54,8 @@ field = np.zeros(distance_m.size, complex)
 np.add.at(field, paths.receiver, paths.gain)
 
 # %%
-# The formula: the ground reflects the upright polarisation with the coefficient +1. The electric
-# field of a ray stands across it, so what the receiver's upright direction sees of it is already
-# in the antennas, which are isotropic.
+# The formula: the ground reflects vertical polarisation with the coefficient +1. Both antennas are
+# isotropic along the vertical polarisation of each ray, so no further projection is needed.
 k = 2.0 * np.pi / source.wavelength_m
 direct_m = np.hypot(distance_m, plan.source[2] - height_m)
 reflected_m = np.hypot(distance_m, plan.source[2] + height_m)
@@ -64,7 +63,7 @@ two_rays = np.exp(-1j * k * direct_m) / direct_m + np.exp(-1j * k * reflected_m)
 two_rays *= source.wavelength_m / (4.0 * np.pi)
 
 worst_db = np.max(np.abs(20.0 * np.log10(np.abs(field) / np.abs(two_rays))))
-print(f"greatest difference between tracer and formula: {worst_db:.4f} dB")
+print(f"maximum difference between tracer and formula: {worst_db:.4f} dB")
 
 # %%
 figure, ax = plt.subplots(figsize=(COLUMN_IN, 2.6), layout="constrained")

@@ -1,11 +1,11 @@
 """
-Round the end of a wall
-=======================
+Diffraction at the end of a wall
+================================
 
-Behind a wall the signal does not end at the shadow's edge. This wall absorbs what falls on it, so
-that nothing but diffraction reaches its shadow. The classical answer for a thin absorbing screen
-is Fresnel's integral (a *knife edge*, Recommendation ITU-R P.526); the tracer has the uniform
-theory of diffraction.
+Behind a wall the signal does not end at the shadow boundary. This wall is absorbing, so only the
+diffracted field reaches its shadow. The classical solution for a thin absorbing screen
+is Fresnel's integral (a *knife edge*, Recommendation ITU-R P.526). The tracer uses the uniform
+theory of diffraction (UTD).
 """
 
 import matplotlib.pyplot as plt
@@ -41,7 +41,7 @@ thickness_m = 0.1
 """)
 
 # %%
-# Receivers on a line behind the wall, from deep in its shadow into the light.
+# Receivers on a line behind the wall, from deep in its shadow into the lit region.
 y = np.linspace(12.0, 28.0, 801)
 receivers = np.column_stack([np.full(y.size, 60.0), y, np.full(y.size, plan.source[2])])
 source = raytrace.Transmitter(plan.source, antenna=raytrace.Isotropic())
@@ -68,7 +68,7 @@ with np.errstate(divide="ignore"):
     ray_db, total_db = (20.0 * np.log10(np.abs(field_of(d)) / free_space) for d in (0, 1))
 
 # %%
-# The knife edge: :math:`J(\nu)` with :math:`\nu` from how far the wall's end stands out of the
+# The knife edge: :math:`J(\nu)`, with :math:`\nu` from the clearance between the wall's end and the
 # line of sight.
 before_m, behind_m = 25.0, 30.0
 clearance_m = (y - plan.source[1]) * before_m / (before_m + behind_m)
@@ -79,11 +79,11 @@ sine, cosine = fresnel(nu)
 knife_edge_db = 10.0 * np.log10(((0.5 - cosine) ** 2 + (0.5 - sine) ** 2) / 2.0)
 
 near = np.abs(nu) < 2.0
-print(f"greatest difference for |nu| < 2: {np.max(np.abs(total_db - knife_edge_db)[near]):.2f} dB")
+print(f"maximum difference for |nu| < 2: {np.max(np.abs(total_db - knife_edge_db)[near]):.2f} dB")
 
 # %%
 figure, ax = plt.subplots(figsize=(COLUMN_IN, 2.6), layout="constrained")
-ax.plot(y, ray_db, color="0.6", label="line of sight alone")
+ax.plot(y, ray_db, color="0.6", label="line of sight only")
 ax.plot(y, total_db, label="with diffraction")
 ax.plot(y, knife_edge_db, "k:", label="knife edge")
 ax.axvline(20.0, color="0.85", zorder=0)

@@ -1,9 +1,9 @@
 """
-When the power arrives
-======================
+Power delay profile
+===================
 
-Every path to one receiver has a delay and a power: the power delay profile. A receiver of limited
-bandwidth cannot tell paths apart that arrive close together; it sees their sum, sampled.
+Every path to a receiver has a delay and a power: the power delay profile. A receiver of limited
+bandwidth cannot resolve paths that arrive close together; it samples their sum.
 """
 
 import matplotlib.pyplot as plt
@@ -22,7 +22,7 @@ receiver = np.array([[*plan.start, 2.0]])
 paths = raytrace.trace_paths(scene_of(plan), source, receiver)
 
 # %%
-# How much do the strongest paths make up?
+# How much of the power do the strongest paths carry?
 power = np.abs(paths.gain) ** 2
 for n in (1, 10, 100, len(paths)):
     print(

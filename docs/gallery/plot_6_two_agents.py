@@ -1,9 +1,9 @@
 """
-Two agents learn to find a phone
-================================
+Two agents learn to find a transmitter
+======================================
 
-One agent knows only the RSS it reads. The other knows where it is, and where the phone is. Both
-learn by Q-learning, from the same start, twenty times over with independent random numbers.
+One agent observes only the RSS. The other knows its own position and that of the transmitter. Both
+learn by Q-learning from the same start, in twenty independent runs.
 """
 
 import matplotlib.pyplot as plt
@@ -24,17 +24,15 @@ agents = (rssnav.RssAgent(terminal_dbm=-30.0), rssnav.LocationAgent())
 results = [rssnav.train(world, agent, runs=20, episodes=1000) for agent in agents]
 
 # %%
-# An agent that knew everything would take the fewest steps that are possible. The two agents end
-# at different cells, the first above -30 dBm and the second within 2 m of the source, so each has
-# its own fewest.
+# An agent with full knowledge would take the minimum number of steps. The two agents end at
+# different cells, the first above -30 dBm and the second within 2 m of the transmitter, so each has
+# its own minimum.
 figure, (left, right) = plt.subplots(1, 2, figsize=(PAGE_IN, 2.4), layout="constrained")
 for agent, result in zip(agents, results, strict=True):
     colour = AGENT_COLOURS[agent.name]
     terminal = agent.decision_process(world, result.learning).terminal
     fewest = rssnav.shortest_path(world, terminal).steps
-    print(
-        f"{agent.name:8} {result.path_steps.mean():.1f} steps in the end, fewest possible {fewest}"
-    )
+    print(f"{agent.name:8} {result.path_steps.mean():.1f} steps after training, minimum {fewest}")
     episode = np.arange(1, result.steps.shape[1] + 1)
     left.loglog(
         episode, result.steps.mean(axis=0), color=colour, lw=0.8, label=f"{agent.name} agent"
@@ -47,5 +45,5 @@ left.legend()
 draw_radio_map(plan, radio_map, right).set_alpha(0.75)
 for agent, result in zip(agents, results, strict=True):
     draw_flight(right, result.trajectory_m(0), agent.name)
-right.set_title("where they fly in the end")
+right.set_title("flights after training")
 plt.show()

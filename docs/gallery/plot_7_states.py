@@ -1,9 +1,9 @@
 """
-Fewer states, and readings that fluctuate
-=========================================
+Discrete states and fluctuating RSS
+===================================
 
-In a world that stands still every RSS value can be a state of its own. Real readings fluctuate,
-and then a state must be a range of readings. How wide may it be?
+In a static world every RSS value can be a state of its own. Real RSS readings fluctuate, and then a
+state must be a range of readings. How wide may it be?
 """
 
 import matplotlib.pyplot as plt
@@ -22,8 +22,8 @@ threshold_db = np.array([0.02, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0])
 RUNS = 16
 
 # %%
-# A tolerance of Th dB: a reading nearer than that to a known state is that state. Each point is
-# 16 independent trainings of 500 episodes, cut at 300 steps.
+# With a tolerance of Th dB, a reading nearer than that to a known state is that state. Each point
+# is 16 independent trainings of 500 episodes, truncated at 300 steps.
 learning = rssnav.QLearning(max_steps=300)
 figure, (left, right) = plt.subplots(1, 2, figsize=(PAGE_IN, 2.3), layout="constrained")
 for sigma_db, lightness in ((0.0, -0.4), (0.1, 0.0), (0.5, 0.5)):
@@ -41,13 +41,13 @@ for sigma_db, lightness in ((0.0, -0.4), (0.1, 0.0), (0.5, 0.5)):
 left.axhline(world.n_states, color="0.7", ls=":", label="cells")
 left.set_ylabel("states")
 left.legend()
-right.set_ylabel("share of final flights that arrive")
+right.set_ylabel("fraction of final flights that arrive")
 right.set_ylim(-0.05, 1.05)
 for ax in (left, right):
     ax.set_xlabel("tolerance Th [dB]")
 plt.show()
 
 # %%
-# The final flight is the greedy one over steady readings. Narrow states multiply under
-# fluctuation, and each of them is visited rarely. Wide states take cells for one that need
-# different steps, and fewer flights arrive; why the widest do better again was not looked into.
+# The final flight is the greedy one without fluctuation. With fluctuation, narrow states are many,
+# and each is visited rarely. Wide states merge cells that need different actions, and fewer flights
+# arrive. Why the widest do better again was not investigated.

@@ -2,8 +2,8 @@
 A flight, step by step
 ======================
 
-What ``rssnav fly`` writes as a GIF or MP4: the trained UAV over the map, and the RSS it reads on
-its way. Here it searches the larger building of the paper, four cells a step.
+The animation that ``rssnav fly`` writes as a GIF or MP4: the trained UAV over the map, and the RSS
+it measures. Here it searches the larger building of the paper, at four cells per step.
 """
 
 import matplotlib.pyplot as plt
@@ -26,8 +26,7 @@ flight = Flight.of(result)
 print(flight.label)
 
 # %%
-# ``FlightScene`` draws one picture a step; ``save_flight_movie`` writes them into
-# a file.
+# ``FlightScene`` draws one picture per step; ``save_flight_movie`` writes them to a file.
 with drawing():
     scene = FlightScene(plan, radio_map, [flight])
 first = scene.frame(0)
@@ -38,7 +37,7 @@ image = ax.imshow(first)
 
 
 def show(step: int) -> None:
-    """Put the picture of a step on the screen."""
+    """Show the picture of a step."""
     image.set_data(scene.frame(step))
 
 

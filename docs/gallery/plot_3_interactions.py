@@ -1,9 +1,9 @@
 """
-What each interaction adds
-==========================
+Contribution of each interaction
+================================
 
-The map of the built-in flat: first the cells that see the phone in the bedroom, then with six
-reflections, then with one diffraction as well. Hatched cells have no path.
+The map of the built-in flat: line of sight only, then with up to six reflections, then also with
+one diffraction. Hatched cells have no path.
 """
 
 import matplotlib.pyplot as plt
@@ -19,7 +19,7 @@ plt.rcParams.update(STYLE)
 plan = floorplans.load("flat")
 
 # %%
-# Half a metre a cell, 2 m above the floor; ``make_map`` returns a map, and keeps it in a file where
+# Cells of half a metre, 2 m above the floor. ``make_map`` returns a map, and writes it to a file if
 # one is given.
 limits = {
     "line of sight": TraceConfig(0, 0),
@@ -29,10 +29,8 @@ limits = {
 maps = {what: make_map(plan, cell_size_m=0.5, config=limit) for what, limit in limits.items()}
 
 for what, radio_map in maps.items():
-    lit = np.isfinite(radio_map.rss_dbm)
-    print(
-        f"{what:18} {radio_map.path_count.sum():7d} paths, {lit.mean():4.0%} of the cells have one"
-    )
+    covered = np.isfinite(radio_map.rss_dbm).mean()
+    print(f"{what:18} {radio_map.path_count.sum():7d} paths, {covered:4.0%} of the cells have one")
 
 # %%
 figure, panels = plt.subplots(1, 3, figsize=(PAGE_IN, 2.1), sharey=True, layout="constrained")
@@ -45,5 +43,5 @@ figure.colorbar(image, ax=panels, label="RSS [dBm]", extend="both")
 plt.show()
 
 # %%
-# The bathroom's door is shut, so nothing gets in: transmission through walls is not traced unless
-# asked for.
+# The bathroom's door is closed, so no path enters: by default, transmission through walls is not
+# traced.
