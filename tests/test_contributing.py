@@ -5,7 +5,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
-PACKAGES = ("floorplans", "raytrace", "rssnav")
+PACKAGES = ("atomicfiles", "floorplans", "raytrace", "rssnav")
 
 
 def folders_drawn() -> set[str]:
