@@ -6,24 +6,24 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class TraceConfig:
-    """How far the tracer goes.
+    """Limits of a trace.
 
     Attributes
     ----------
     max_reflections
-        Most reflections on a path, walls, floor and ceiling together, also on a path with a
-        diffraction (there on both sides of the edge together).
+        Most reflections on a path: walls, floor and ceiling together, before and after a
+        diffraction together.
     max_diffractions
         0 or 1.
     max_transmissions
-        Most walls that a path goes through, straight on, with the slabs' transmission; doors and
-        windows that are filled are walls.
+        Most walls that a path goes through, each with its transmission coefficient; filled doors
+        and windows are walls.
     min_power_dbm
-        Paths that are known to arrive with less are left out; all are kept by default. The map
-        then holds a bound on what was left out (`RadioMap.left_out_db`).
+        Paths below it are left out; all are kept by default. The map holds a bound on what was
+        left out (`RadioMap.left_out_db`).
     max_paths
-        The most paths that are looked at for a whole map: `min_power_dbm` is raised, 1 dB at a
-        time, until it is kept. No limit by default.
+        Most paths of a whole map: `min_power_dbm` is raised in steps of 1 dB until it is met. No
+        limit by default.
     """
 
     max_reflections: int = 6
@@ -33,7 +33,7 @@ class TraceConfig:
     max_paths: int | None = None
 
     def __post_init__(self) -> None:
-        """Check the limits; raise ValueError where one cannot be."""
+        """Check the limits; raise ValueError for one out of range."""
         if not 0 <= self.max_reflections <= 20:
             raise ValueError(f"max_reflections = {self.max_reflections}: expected 0 to 20")
         if self.max_diffractions not in (0, 1):

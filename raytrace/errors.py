@@ -9,11 +9,11 @@ class SceneError(ValueError):
 
 
 class SceneWarning(UserWarning):
-    """Something in a mesh that the tracer has put right; the message names the walls."""
+    """A fault of a mesh that the tracer has corrected; the message names the walls."""
 
 
 class AntennaError(ValueError):
-    """A pattern that is no antenna's: wrong columns, or not on a grid of the whole sphere."""
+    """An antenna pattern with wrong columns, or not on a grid over the whole sphere."""
 
 
 class MapFileError(ValueError):

@@ -1,4 +1,4 @@
-"""Libraries that only some functions need: what to install where one is missing."""
+"""Optional dependencies: what to install if one is missing."""
 
 from collections.abc import Generator
 from contextlib import contextmanager

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from raytrace.arrays import Floats
 
 _SAME_PLACE_M = 1e-9
 
@@ -22,8 +23,8 @@ class Grid:
         Side of a cell [m].
     """
 
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
+    x: Floats
+    y: Floats
     height_m: float
     cell_size_m: float
 
@@ -38,8 +39,8 @@ class Grid:
         bounds
             (x_min, y_min, x_max, y_max) [m].
         cell_size_m
-            Side of a cell [m]. A last row or column that does not fit whole is kept if its
-            centre lies inside.
+            Side of a cell [m]. A last row or column that fits only in part is kept if its centre
+            lies inside.
         height_m
             Height of the receivers [m].
         """
@@ -64,7 +65,7 @@ class Grid:
         """(n_y, n_x)."""
         return len(self.y), len(self.x)
 
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Floats:
         """Receivers (n_y * n_x, 3) [m], x running fastest."""
         xx, yy = np.meshgrid(self.x, self.y)
         return np.column_stack([xx.ravel(), yy.ravel(), np.full(xx.size, self.height_m)])

@@ -70,7 +70,7 @@ def trace_paths(
             np.concatenate([p.vertices for p in found]),
             np.concatenate([p.length_m for p in found]),
             np.concatenate([p.gain for p in found]),
-            np.concatenate([p.share for p in found]),
+            np.concatenate([p.weight for p in found]),
         )
         .with_halves_joined()
         .strongest_first()

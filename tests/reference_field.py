@@ -165,7 +165,7 @@ def pattern(antenna: Antenna, directions: Floats) -> Complexes:
     level = np.cross(upright, directions)
     azimuth = np.arctan2(directions[:, 1], directions[:, 0])
     a = antenna.amplitudes(directions[:, 2], azimuth)
-    return np.asarray(a.upright)[:, None] * upright + np.asarray(a.level)[:, None] * level + 0j
+    return np.asarray(a.v)[:, None] * upright + np.asarray(a.h)[:, None] * level + 0j
 
 
 def transmitted(facets: Facets, radio: Radio, points: Floats, field: Complexes) -> Complexes:

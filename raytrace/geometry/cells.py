@@ -1,9 +1,8 @@
 """The plan view cut into convex cells.
 
-Within a convex cell nothing stands between two points, so a beam that is followed from cell to
-cell through their edges needs no occlusion test. An edge of a cell is a wall, a partial wall
-(one that is open at some heights: a door, a window, a counter) or a portal, which is nothing
-but the cut between two cells.
+Nothing stands between two points of a convex cell, so a beam that is followed from cell to cell
+through their edges needs no occlusion test. An edge of a cell is a wall, a partial wall (open at
+some heights: a door, a window, a counter) or a portal (a cut between two cells, without a wall).
 """
 
 from collections.abc import Sequence
@@ -11,22 +10,19 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from raytrace.arrays import Bools, Floats, Ints
 from raytrace.errors import SceneError
 from raytrace.geometry.junctions import NEAR_M
 from raytrace.geometry.noding import Segment, Vertex, node
 from raytrace.geometry.sheets import OPEN, Panel, Profile, Sheets
 from raytrace.kernels.plan_view import PARTIAL, PORTAL, WALL, PlanView
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 
 @dataclass(frozen=True, eq=False)
 class CellComplex:
-    """The plan view as the kernels see it, and what it was made from.
+    """The plan view for the kernels, and its vertices and walls.
 
     Attributes
     ----------
@@ -69,7 +65,7 @@ def cut_into_cells(sheets: Sheets) -> CellComplex:
 
 
 def _unsnapped(vertices: Floats, sheets: Sheets) -> Floats:
-    """Put vertices back from the grid to where they were drawn, or onto the walls they are on."""
+    """Move vertices from the snapping grid back to where they were drawn, or onto their walls."""
     drawn = np.array([end for p in sheets.panels for end in (p.start, p.end)])
     off, nearest = KDTree(drawn).query(vertices)
     exact = np.where((off < 1e-11)[:, None], drawn[nearest], vertices)
@@ -219,10 +215,8 @@ def _plan_view(
     )
 
 
-def _behind(
-    rings: list[list[int]], corners: list[list[int]], kind: NDArray[np.int64]
-) -> list[list[int]]:
-    """For each edge that is a full wall, the edges of other cells at its back."""
+def _behind(rings: list[list[int]], corners: list[list[int]], kind: Ints) -> list[list[int]]:
+    """For each edge that is a full wall, the edges of other cells behind it."""
     owner: dict[tuple[int, int], int] = {}
     first = 0
     for ring, kept in zip(rings, corners, strict=True):
@@ -251,7 +245,7 @@ def _kind(panel: Panel | None) -> int:
     return WALL if panel.profile.is_full else PARTIAL
 
 
-def _refuse_open(lost: NDArray[np.bool_], ends: Floats) -> None:
+def _refuse_open(lost: Bools, ends: Floats) -> None:
     if lost.any():
         (x1, y1), (x2, y2) = ends[lost][0]
         raise SceneError(

@@ -1,8 +1,8 @@
-"""Where a building diffracts: upright edges at wall ends and corners, level ones at lintels.
+"""Diffracting edges: vertical ones at wall ends and corners, horizontal ones at openings.
 
-An edge diffracts where the free space around it is more than half a turn. Upright edges are
-found height interval by height interval, so a door jamb ends at the lintel and a T-junction is
-no edge at all. A level edge is the rim of a wall over or under an opening: a half plane.
+An edge diffracts where the free space around it is more than half a turn. Vertical edges are
+found for each height interval, so a door jamb ends at the lintel and a T-junction is no edge. A
+horizontal edge bounds a wall over or under an opening (lintel, sill, wall top): a half plane.
 """
 
 from collections.abc import Iterator
@@ -11,14 +11,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from raytrace.arrays import Ints
 from raytrace.geometry.cells import CellComplex
 from raytrace.geometry.sheets import OPEN, Profile
 from raytrace.kernels.plan_view import PARTIAL
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 TURN = 2.0 * np.pi
 
@@ -33,9 +30,9 @@ class VerticalEdge:
     Attributes
     ----------
     vertex
-        Its place in the plan view, as a vertex number.
+        Vertex number in the plan view.
     x, y
-        The same [m].
+        Its position [m].
     o_face_azimuth
         Direction of the o-face [rad]; the free space lies counter-clockwise of it.
     wedge_n
@@ -43,7 +40,7 @@ class VerticalEdge:
     o_material, n_material
         Slab of the o-face and of the n-face.
     z_low, z_high
-        Heights between which the edge stands [m].
+        Heights of its ends [m].
     cells
         (n,) cells of the plan view in the free space at the edge.
     """
@@ -62,7 +59,7 @@ class VerticalEdge:
 
 @dataclass(frozen=True)
 class HorizontalEdge:
-    """The horizontal rim of a wall: a half plane.
+    """The lintel, sill or top edge of a wall: a half plane.
 
     Attributes
     ----------
@@ -150,7 +147,7 @@ def _wedges(walls: list[tuple[float, Profile]], z: float) -> Iterator[_Wedge]:
 
 
 def find_horizontal_edges(cells: CellComplex) -> tuple[HorizontalEdge, ...]:
-    """Return every horizontal rim of a wall over or under an opening."""
+    """Return every horizontal edge of a wall over or under an opening."""
     view = cells.view
     edges: list[HorizontalEdge] = []
     for e in np.flatnonzero((view.kind == PARTIAL) & (view.twin > np.arange(len(view.twin)))):

@@ -1,6 +1,6 @@
-"""Walls that nearly meet are made to meet.
+"""Walls that nearly meet are joined.
 
-Drawings are off by rounding, and now and then by a hair. A wall end that stops within `NEAR_M`
+Drawings are off by rounding, and sometimes by a little more. A wall end that stops within `NEAR_M`
 short of another wall, or pokes through it by no more, is moved along its own wall onto the other
 one, so no wall bends; `SceneWarning` names both walls.
 """
@@ -11,22 +11,21 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from raytrace.arrays import Floats
 from raytrace.errors import SceneWarning
 from raytrace.geometry.sheets import Panel
 
-Floats = NDArray[np.float64]
 Vertex = tuple[float, float]
 
 TOUCHING_M = 1e-8
-"""A wall end this near another wall meets it [m]: rounding, no mistake."""
+"""A wall end this near another wall meets it [m]: a rounding error."""
 
 ROUNDED_M = 1e-6
-"""A move by less is that of a coordinate rounded in a file, and not told [m]."""
+"""A move by less is due to coordinates rounded in a file, and not reported [m]."""
 
 NEAR_M = 1e-3
-"""A wall end this near another wall is taken to meet it [m]."""
+"""A wall end this near another wall is moved onto it [m]."""
 
 STEEP = 0.05
 """Walls that meet at a smaller sine count as parallel."""
@@ -45,14 +44,14 @@ class _Move(NamedTuple):
 
 
 def join_near_walls(panels: Sequence[Panel]) -> list[Panel]:
-    """Move wall ends that nearly meet another wall onto it, and warn of it."""
+    """Move wall ends that nearly meet another wall onto it, with a warning."""
     joined = list(panels)
     moves = list(_moves(panels))
     for panel, side, to, _ in moves:
         joined[panel] = joined[panel]._replace(**{("start", "end")[side]: to})
-    told = [move for move in moves if _moved_by(panels, move) > ROUNDED_M]
-    if told:
-        warnings.warn(_sentence(panels, told), SceneWarning, stacklevel=2)
+    reported = [move for move in moves if _moved_by(panels, move) > ROUNDED_M]
+    if reported:
+        warnings.warn(_sentence(panels, reported), SceneWarning, stacklevel=2)
     return joined
 
 
@@ -99,8 +98,8 @@ def _in_words(panels: Sequence[Panel], move: _Move) -> str:
     panel, other = panels[move.panel], panels[move.other]
     by_mm = 1e3 * _moved_by(panels, move)
     return (
-        f"the wall {_stretch(panel)} by {by_mm:.3g} mm at ({move.to[0]:g}, {move.to[1]:g}), "
-        f"onto the wall {_stretch(other)}"
+        f"the wall {_ends(panel)} by {by_mm:.3g} mm at ({move.to[0]:g}, {move.to[1]:g}), "
+        f"onto the wall {_ends(other)}"
     )
 
 
@@ -109,6 +108,6 @@ def _moved_by(panels: Sequence[Panel], move: _Move) -> float:
     return _length(move.to - (panel.start, panel.end)[move.side])
 
 
-def _stretch(panel: Panel) -> str:
+def _ends(panel: Panel) -> str:
     (x1, y1), (x2, y2) = panel.start, panel.end
     return f"from ({x1:g}, {y1:g}) to ({x2:g}, {y2:g})"

@@ -1,8 +1,8 @@
-"""The plan view's walls, split where they meet, and cuts that leave no loose ends.
+"""The plan view's walls, split where they meet, and the cuts that connect free wall ends.
 
-The faces between walls and cuts are to be simply bounded: no wall may end within a face, and no
-chain of walls may stick into one. A cut carries a free wall end on to the next wall; another one
-ties the far side of what hangs on a single chain to the rest.
+The faces between walls and cuts must be simply bounded: no wall ends within a face, and no chain of
+walls reaches into one. A cut extends a free wall end to the next wall; another cut connects what a
+single chain of walls (a bridge of the graph) holds to the rest.
 """
 
 from collections import defaultdict
@@ -14,11 +14,11 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from raytrace.arrays import Floats
 from raytrace.errors import SceneError
 from raytrace.geometry.junctions import TOUCHING_M, join_near_walls
 from raytrace.geometry.sheets import Panel
 
-Floats = NDArray[np.float64]
 Vertex = tuple[float, float]
 Segment = tuple[Vertex, Vertex]
 
@@ -44,7 +44,7 @@ class _Lines:
         return np.array([self._drawn[number] for number in range(len(self._chains))], dtype=object)
 
     def add_cut(self, tip: Vertex, ahead: Floats) -> bool:
-        """Carry a cut straight on from a vertex to the nearest line; tell whether there is one."""
+        """Add a cut straight on from a vertex to the nearest line; return whether there is one."""
         ray = shapely.LineString([np.array(tip) + ahead * 1e-6, np.array(tip) + ahead * 1e5])
         lines = self.geometries()
         hits, chain = shapely.get_coordinates(shapely.intersection(ray, lines), return_index=True)
@@ -56,7 +56,7 @@ class _Lines:
         return True
 
     def _share_vertices(self) -> None:
-        """Give walls that meet one vertex there, however their ends are rounded."""
+        """Give walls that meet one common vertex, however their ends are rounded."""
         ends = [v for chain in self._chains for v in chain]
         tree = shapely.STRtree(shapely.points(ends))
         first, second = tree.query(shapely.points(ends), "dwithin", TOUCHING_M)
@@ -72,7 +72,7 @@ class _Lines:
             self._insert(chain, own[vertex])
 
     def _insert(self, number: int, vertex: Vertex) -> Vertex:
-        """Make a point on a chain one of its vertices, and return it or the one that is there."""
+        """Insert a point on a chain as a vertex; return it, or the vertex already there."""
         chain = self._chains[number]
         away = [float(np.hypot(v[0] - vertex[0], v[1] - vertex[1])) for v in chain]
         if min(away) <= TOUCHING_M:
@@ -110,7 +110,7 @@ def node(
     lines = _Lines(panels)
     walls = lines.geometries()
     pieces = _pieces(lines)
-    while _tie_loose_ends(lines, pieces) or _tie_bridges(lines, pieces, footprint):
+    while _cut_at_free_ends(lines, pieces) or _cut_at_bridge(lines, pieces, footprint):
         pieces = _pieces(lines)
     middles = shapely.points([((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) for a, b in pieces])
     tree = shapely.STRtree(walls)
@@ -131,8 +131,8 @@ def _pieces(lines: _Lines) -> list[Segment]:
     return list(found)
 
 
-def _tie_loose_ends(lines: _Lines, pieces: Sequence[Segment]) -> bool:
-    """Add cuts that carry free ends on; tell whether there were any."""
+def _cut_at_free_ends(lines: _Lines, pieces: Sequence[Segment]) -> bool:
+    """Add cuts at free ends; return whether there were any."""
     neighbours: defaultdict[Vertex, list[Vertex]] = defaultdict(list)
     for a, b in pieces:
         neighbours[a].append(b)
@@ -147,8 +147,8 @@ def _tie_loose_ends(lines: _Lines, pieces: Sequence[Segment]) -> bool:
     return bool(free)
 
 
-def _tie_bridges(lines: _Lines, pieces: Sequence[Segment], footprint: BaseGeometry) -> bool:
-    """Add a cut from the far side of what a single chain holds; tell whether there was any.
+def _cut_at_bridge(lines: _Lines, pieces: Sequence[Segment], footprint: BaseGeometry) -> bool:
+    """Add a cut from the far side of a bridge; return whether there was one.
 
     A pillar with a spur is such a case: the face around it would have the chain on both sides.
     """
@@ -157,9 +157,9 @@ def _tie_bridges(lines: _Lines, pieces: Sequence[Segment], footprint: BaseGeomet
     if not inside:
         return False
     a, b = (_vertex(v) for v in shapely.get_coordinates(inside[0]))
-    held, way = _held_by((a, b), pieces)
-    far = max(held, key=lambda v: v[0] * way[0] + v[1] * way[1])
-    if not lines.add_cut(far, way):
+    held, ahead = _held_by((a, b), pieces)
+    far = max(held, key=lambda v: v[0] * ahead[0] + v[1] * ahead[1])
+    if not lines.add_cut(far, ahead):
         raise SceneError(
             f"the walls around ({far[0]:g}, {far[1]:g}) reach out of the building: "
             "the walls do not enclose the footprint"

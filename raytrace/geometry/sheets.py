@@ -1,8 +1,8 @@
-"""A wall mesh read as an extruded building: floor, ceiling, and upright panels.
+"""A wall mesh read as an extruded building: floor, ceiling, and vertical panels.
 
-The tracer works on plans that are extruded: two horizontal slabs and vertical sheets between
-them. Triangles that lie in one plane are joined, so any triangulation of a building gives the
-same panels; a mesh that is not of this kind is refused with the faces that are at fault.
+The tracer works on plans that are extruded: a floor, a ceiling and vertical sheets between
+them. Triangles in one plane are joined, so any triangulation of a building gives the same panels;
+another kind of mesh is refused, and the message names the faces at fault.
 """
 
 from collections.abc import Iterator
@@ -12,13 +12,10 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 import trimesh
-from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from raytrace.arrays import Bools, Floats, Ints
 from raytrace.errors import SceneError
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 PLANE_TOLERANCE_M = 1e-7
 """Vertices this close to a plane lie in it [m]."""
@@ -28,7 +25,7 @@ OPEN = -1
 
 
 class Profile(NamedTuple):
-    """What a wall is made of over its height, from the floor to the ceiling.
+    """The materials of a wall over its height, from the floor to the ceiling.
 
     `tops` are the upper heights [m] of the intervals, `materials` their material or `OPEN`.
     """
@@ -47,7 +44,7 @@ class Profile(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """An upright sheet over one straight piece of the plan: `start`, `end` (2,) [m]."""
+    """A vertical sheet over one straight section of the plan: `start`, `end` (2,) [m]."""
 
     start: Floats
     end: Floats
@@ -97,7 +94,7 @@ def read_sheets(mesh: trimesh.Trimesh, face_material: Ints) -> Sheets:
     Raises
     ------
     SceneError
-        For sloped faces, partial slabs, and sheets that are not rectangles on edge.
+        For sloped faces, partial floors or ceilings, and sheets that are not made of rectangles.
     """
     triangles = np.asarray(mesh.triangles, dtype=np.float64)
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
@@ -105,33 +102,33 @@ def read_sheets(mesh: trimesh.Trimesh, face_material: Ints) -> Sheets:
     real = area2 > 1e-14
     triangles, face_material = triangles[real], np.asarray(face_material)[real]
     normals = normals[real] / area2[real, None]
-    upright = np.abs(normals[:, 2]) < 1e-9
-    level = np.abs(normals[:, 2]) > 1.0 - 1e-9
-    _refuse_sloped(~(upright | level), np.flatnonzero(real))
-    if not level.any():
+    vertical = np.abs(normals[:, 2]) < 1e-9
+    horizontal = np.abs(normals[:, 2]) > 1.0 - 1e-9
+    _refuse_sloped(~(vertical | horizontal), np.flatnonzero(real))
+    if not horizontal.any():
         raise SceneError("the mesh has no floor and no ceiling: expected two horizontal slabs")
-    floor_z, ceiling_z = triangles[level, :, 2].min(), triangles[level, :, 2].max()
-    footprint, floor = _slab(triangles, face_material, level, floor_z, "floor")
-    roof, ceiling = _slab(triangles, face_material, level, ceiling_z, "ceiling")
-    _refuse_partial_slabs(triangles, level, (floor_z, ceiling_z), np.flatnonzero(real))
+    floor_z, ceiling_z = triangles[horizontal, :, 2].min(), triangles[horizontal, :, 2].max()
+    footprint, floor = _floor_or_ceiling(triangles, face_material, horizontal, floor_z, "floor")
+    roof, ceiling = _floor_or_ceiling(triangles, face_material, horizontal, ceiling_z, "ceiling")
+    _refuse_partial_slabs(triangles, horizontal, (floor_z, ceiling_z), np.flatnonzero(real))
     if footprint.symmetric_difference(roof).area > 1e-6:
         raise SceneError("floor and ceiling do not cover the same ground: not an extruded plan")
-    walls = triangles[upright] - np.array([0.0, 0.0, floor_z])
+    walls = triangles[vertical] - np.array([0.0, 0.0, floor_z])
     height = float(ceiling_z - floor_z)
     if len(walls) and (walls[:, :, 2].min() < -1e-9 or walls[:, :, 2].max() > height + 1e-9):
         raise SceneError("walls reach below the floor or above the ceiling")
-    planes, plane_of = _group_planes(walls, normals[upright][:, :2])
+    planes, plane_of = _group_planes(walls, normals[vertical][:, :2])
     panels = tuple(
         panel
         for k in range(len(planes))
         for panel in _panels_of_plane(
-            walls[plane_of == k], face_material[upright][plane_of == k], planes[k], k, height
+            walls[plane_of == k], face_material[vertical][plane_of == k], planes[k], k, height
         )
     )
     return Sheets(panels, planes, footprint, float(floor_z), height, floor, ceiling)
 
 
-def _refuse_sloped(sloped: NDArray[np.bool_], index: Ints) -> None:
+def _refuse_sloped(sloped: Bools, index: Ints) -> None:
     if sloped.any():
         faces = ", ".join(map(str, index[sloped][:5]))
         raise SceneError(
@@ -141,10 +138,10 @@ def _refuse_sloped(sloped: NDArray[np.bool_], index: Ints) -> None:
 
 
 def _refuse_partial_slabs(
-    triangles: Floats, level: NDArray[np.bool_], slabs_z: tuple[float, float], index: Ints
+    triangles: Floats, horizontal: Bools, slabs_z: tuple[float, float], index: Ints
 ) -> None:
     off = np.min([np.abs(triangles[:, 0, 2] - z) for z in slabs_z], axis=0)
-    between = level & (off > 1e-9)
+    between = horizontal & (off > 1e-9)
     if between.any():
         x, y, z = triangles[between][0].mean(axis=0)
         raise SceneError(
@@ -155,11 +152,11 @@ def _refuse_partial_slabs(
         )
 
 
-def _slab(
-    triangles: Floats, face_material: Ints, level: NDArray[np.bool_], z: float, what: str
+def _floor_or_ceiling(
+    triangles: Floats, face_material: Ints, horizontal: Bools, z: float, what: str
 ) -> tuple[BaseGeometry, int]:
-    """Footprint and material of the slab at height z."""
-    mine = level & (np.abs(triangles[:, :, 2] - z).max(axis=1) < 1e-9)
+    """Footprint and material of the floor or ceiling at height z."""
+    mine = horizontal & (np.abs(triangles[:, :, 2] - z).max(axis=1) < 1e-9)
     materials = np.unique(face_material[mine])
     if len(materials) != 1:
         raise SceneError(f"the {what} has {len(materials)} materials: expected one")
@@ -188,7 +185,7 @@ def _group_planes(walls: Floats, normals: Floats) -> tuple[Floats, Ints]:
 def _panels_of_plane(
     walls: Floats, materials: Ints, plane: Floats, index: int, height: float
 ) -> Iterator[Panel]:
-    """Panels of the triangles of one plane: maximal stretches of one profile."""
+    """Panels of the triangles of one plane: maximal sections of one profile."""
     along = walls[:, :, :2] @ np.array([-plane[1], plane[0]])
     s, where = _distinct(along.ravel())
     corners = walls[:, :, :2].reshape(-1, 2)[where]
@@ -215,7 +212,7 @@ def _fill(triangles: Floats, materials: Ints, s: Floats, z: Floats, plane: int) 
         inside = shapely.contains_xy(sheet, grid_s, grid_z)
         if abs(cell_area[inside].sum() - sheet.area) > 1e-6:
             raise SceneError(
-                f"the wall in plane {plane} is not made of rectangles on edge: its triangles "
+                f"the wall in plane {plane} is not made of vertical rectangles: its triangles "
                 f"cover {sheet.area:.6f} m2, the rectangles {cell_area[inside].sum():.6f} m2"
             )
         filled[inside & (filled == OPEN)] = material

@@ -1,1 +1,1 @@
-"""Materials, antennas and the transmitter, and the tables the kernels look them up in."""
+"""Materials, antennas, the transmitter, and their lookup tables for the kernels."""

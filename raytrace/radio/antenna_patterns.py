@@ -1,4 +1,4 @@
-"""Antennas given by a table of their pattern: from arrays, or from a CSV file."""
+"""Antennas given by a table of their pattern, from arrays or from a CSV file."""
 
 import csv
 from dataclasses import dataclass
@@ -6,14 +6,12 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import RegularGridInterpolator
 
+from raytrace.arrays import Complexes, Floats, Ints
 from raytrace.errors import AntennaError
 from raytrace.radio.antennas import Amplitudes
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 ANGLE_KEYS = ("theta_deg", "phi_deg")
 GAIN_KEYS = ("gain_dbi", "gain_theta_dbi", "gain_phi_dbi")
@@ -23,7 +21,7 @@ TOLERANCE_DEG = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class PatternTable:
-    """An antenna whose field is known on a grid of directions, interpolated linearly between.
+    """An antenna whose field is given on a grid of directions and interpolated linearly.
 
     Amplitudes are relative to a 0 dBi radiator: the sum of their squared
     magnitudes is the gain. Nothing is normalised; `mean_gain` of a lossless antenna is 1.
@@ -37,7 +35,7 @@ class PatternTable:
     e_theta, e_phi
         (n_theta, n_phi) complex amplitudes along theta-hat and phi-hat, for e^(+j omega t).
     name
-        What it is called where it is described.
+        For `describe`.
     """
 
     theta_deg: Floats
@@ -80,7 +78,7 @@ class PatternTable:
     def of_gain(
         cls, theta_deg: ArrayLike, phi_deg: ArrayLike, gain_dbi: ArrayLike, name: str = "gain table"
     ) -> "PatternTable":
-        """Make an antenna of a gain [dBi] (n_theta, n_phi), polarised upright and without phase."""
+        """Make a vertically polarised antenna without phase from a gain [dBi] (n_theta, n_phi)."""
         amplitude = np.asarray(10.0 ** (np.asarray(gain_dbi) / 20.0), dtype=np.complex128)
         theta, phi = (np.asarray(angle, dtype=np.float64) for angle in (theta_deg, phi_deg))
         return cls(theta, phi, -amplitude, np.zeros_like(amplitude), name)
@@ -92,14 +90,14 @@ class PatternTable:
         Parameters
         ----------
         path
-            Columns ``theta_deg`` and ``phi_deg``, and either ``gain_dbi`` (polarised upright) or
-            ``gain_theta_dbi`` and ``gain_phi_dbi``, these two with ``phase_theta_deg`` and
-            ``phase_phi_deg`` if wanted. A line for every pair of angles, in any order.
+            Columns ``theta_deg`` and ``phi_deg``, and either ``gain_dbi`` (vertically polarised) or
+            ``gain_theta_dbi`` and ``gain_phi_dbi``, the latter optionally with ``phase_theta_deg``
+            and ``phase_phi_deg``. One line for every pair of angles, in any order.
 
         Raises
         ------
         AntennaError
-            For a file that cannot be read so; the message names file, line and column.
+            For a file of another form; the message names file, line and column.
         """
         columns = _read_columns(Path(path))
         theta, phi = (np.unique(columns[key]) for key in ANGLE_KEYS)
@@ -113,7 +111,7 @@ class PatternTable:
 
     @property
     def mean_gain(self) -> float:
-        """Gain averaged over the sphere, the radiated share of the power fed; 1 without loss."""
+        """Gain averaged over the sphere, the radiated part of the power fed; 1 without loss."""
         theta, phi = np.radians(self.theta_deg), np.radians(self.phi_deg)
         gain = np.abs(self.e_theta) ** 2 + np.abs(self.e_phi) ** 2
         around = np.trapezoid(gain, phi, axis=1)
@@ -175,9 +173,7 @@ def _numbers(path: Path, key: str, texts: list[str]) -> Floats:
     return numbers
 
 
-def _grid_order(
-    columns: dict[str, Floats], theta: Floats, phi: Floats, path: Path
-) -> NDArray[np.int64]:
+def _grid_order(columns: dict[str, Floats], theta: Floats, phi: Floats, path: Path) -> Ints:
     """Line of each pair of angles, phi running fastest."""
     pairs = zip(columns["theta_deg"], columns["phi_deg"], strict=True)
     line_of = {pair: line for line, pair in enumerate(pairs)}

@@ -1,14 +1,15 @@
 """Antenna patterns: two field amplitudes over the direction, and their tables for the kernels.
 
 Towards a unit direction s = (u_x c, u_y c, sigma) with horizontal part u, cosine c and sine sigma
-of the elevation, an antenna has the amplitudes `upright` along tau = (z - (z . s) s) / c, which
-points up, and `level` along psi = z x s / c (docs/theory.md, eq. 10). In spherical coordinates
-tau = -theta-hat and psi = phi-hat. Amplitudes are relative to a 0 dBi radiator: the gain in a
-direction is |upright|^2 + |level|^2, and a lossless antenna's gain averages to 1 over the sphere.
+of the elevation, an antenna has the amplitudes `v` (vertical polarisation) along
+tau = (z - (z . s) s) / c, which points up, and `h` (horizontal) along psi = z x s / c
+(docs/theory.md, eq. 10). In spherical coordinates tau = -theta-hat and psi = phi-hat. Amplitudes
+are relative to a 0 dBi radiator: the gain in a direction is |v|^2 + |h|^2, and a lossless antenna's
+gain averages to 1 over the sphere.
 
 The same pattern serves for receiving. A wave that arrives along s comes from the direction -s,
-where tau is the same vector and psi the opposite one: the antenna takes up
-upright(-s) E_tau - level(-s) E_psi (docs/theory.md, eq. 32).
+where tau is the same vector and psi the opposite one: the antenna receives
+v(-s) E_tau - h(-s) E_psi (docs/theory.md, eq. 32).
 """
 
 from dataclasses import dataclass
@@ -16,22 +17,20 @@ from math import isfinite
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from raytrace.arrays import Complexes, Floats
 from raytrace.errors import SceneError
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 DIPOLE_PEAK_GAIN_DBI = 2.150_88
 """Peak gain of a lossless half-wave dipole over an isotropic radiator [dB] (Balanis, 4-93)."""
 
 
 class Amplitudes(NamedTuple):
-    """Field amplitudes towards directions; two arrays of the directions' shape [1]."""
+    """V and H field amplitudes towards directions; two arrays of the directions' shape [1]."""
 
-    upright: Floats | Complexes
-    level: Floats | Complexes
+    v: Floats | Complexes
+    h: Floats | Complexes
 
 
 class Antenna(Protocol):
@@ -45,7 +44,7 @@ class Antenna(Protocol):
         sine
             Sine of the elevation, the direction's z component; any shape.
         azimuth
-            From +x towards +y [rad]; the same shape. At the zenith it tells what tau means.
+            From +x towards +y [rad]; the same shape. At the zenith it defines tau.
         """
         ...
 
@@ -66,7 +65,7 @@ class HalfWaveDipole:
         Gain across the axis [dB]. The default normalises it to 0 dB, as the paper does;
         a lossless dipole has `DIPOLE_PEAK_GAIN_DBI`.
     axis
-        (x, y, z) along the wire, of any length; upright by default. The opposite axis is the
+        (x, y, z) along the wire, of any length; vertical by default. The opposite axis is the
         same antenna with the opposite phase.
     """
 
@@ -74,7 +73,7 @@ class HalfWaveDipole:
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
-        """Check the axis; raise ValueError where it is no direction."""
+        """Check the axis; raise ValueError for one that is no direction."""
         length = float(np.linalg.norm(self.axis))
         if len(self.axis) != 3 or not (isfinite(length) and length > 0.0):
             raise ValueError(f"axis = {self.axis}: expected three finite numbers, not all 0")
@@ -109,7 +108,7 @@ def _dipole_shape(cos_chi: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Isotropic:
-    """The same amplitude in every direction, polarised along tau.
+    """The same amplitude in every direction, vertically polarised.
 
     Attributes
     ----------
@@ -126,7 +125,7 @@ class Isotropic:
 
     def describe(self) -> str:
         """Name and parameters in one line."""
-        return f"isotropic, upright-polarised, gain {self.gain_db:g} dB"
+        return f"isotropic, vertically polarised, gain {self.gain_db:g} dB"
 
 
 ELEVATION_STEPS = 256
@@ -139,11 +138,11 @@ def antenna_tables(antenna: Antenna) -> tuple[Complexes, Complexes]:
 
     The grid is regular in the coordinates of `table_coordinates`: two quotients instead of two
     angles, which cost no trigonometry and have nodes at the zenith, the horizon and the axes.
-    A half-wave dipole of any axis is met to 1e-4 of its peak amplitude.
+    The error for a half-wave dipole of any axis is below 1e-4 of its peak amplitude.
 
     Returns
     -------
-    upright, level : ndarray
+    v, h : ndarray
         (ELEVATION_STEPS + 1, AZIMUTH_STEPS + 1) complex: first index elevation from nadir to
         zenith, second azimuth from +x once around, the last column repeating the first.
     """
@@ -153,8 +152,8 @@ def antenna_tables(antenna: Antenna) -> tuple[Complexes, Complexes]:
     quarter = np.minimum(np.floor(turn), 3.0)
     azimuth = quarter * (0.5 * np.pi) + np.arctan2(turn - quarter, quarter + 1.0 - turn)
     found = antenna.amplitudes(*np.meshgrid(np.sin(elevation), azimuth, indexing="ij"))
-    upright, level = (np.asarray(part, dtype=np.complex128) for part in found)
-    return upright, level
+    v, h = (np.asarray(part, dtype=np.complex128) for part in found)
+    return v, h
 
 
 def table_coordinates(direction: ArrayLike) -> tuple[Floats, Floats]:
@@ -173,35 +172,35 @@ def table_coordinates(direction: ArrayLike) -> tuple[Floats, Floats]:
     """
     x, y, z = np.moveaxis(np.asarray(direction, dtype=np.float64), -1, 0)
     row = (1.0 + z / (np.abs(z) + np.hypot(x, y))) * (0.5 * ELEVATION_STEPS)
-    share = np.abs(y) / np.maximum(np.abs(x) + np.abs(y), 1e-300)
-    turn = np.where(x >= 0.0, np.where(y >= 0.0, share, 4.0 - share), 0.0)
-    turn = np.where(x < 0.0, np.where(y >= 0.0, 2.0 - share, 2.0 + share), turn)
+    part = np.abs(y) / np.maximum(np.abs(x) + np.abs(y), 1e-300)
+    turn = np.where(x >= 0.0, np.where(y >= 0.0, part, 4.0 - part), 0.0)
+    turn = np.where(x < 0.0, np.where(y >= 0.0, 2.0 - part, 2.0 + part), turn)
     return row, turn * (0.25 * AZIMUTH_STEPS)
 
 
-def is_upright(antenna: Antenna) -> bool:
-    """Whether an antenna is the same all around, polarised upright and real."""
+def is_vertical(antenna: Antenna) -> bool:
+    """Whether an antenna is vertically polarised, real, and the same in all azimuths."""
     sine = np.linspace(-1.0, 1.0, 33)
     around = np.linspace(0.0, 2.0 * np.pi, 13)
-    upright, level = antenna.amplitudes(*np.meshgrid(sine, around, indexing="ij"))
-    real = not np.iscomplexobj(upright) and not np.any(level)
-    return bool(real and np.allclose(upright, upright[:, :1]))
+    v, h = antenna.amplitudes(*np.meshgrid(sine, around, indexing="ij"))
+    real = not np.iscomplexobj(v) and not np.any(h)
+    return bool(real and np.allclose(v, v[:, :1]))
 
 
-def upright_amplitude(antenna: Antenna, sine: Floats) -> Floats:
-    """Amplitude along tau of an antenna for which `is_upright` holds.
+def vertical_amplitude(antenna: Antenna, sine: Floats) -> Floats:
+    """V amplitude of an antenna for which `is_vertical` holds.
 
     Raises
     ------
     SceneError
         For an antenna that is not of that kind.
     """
-    if not is_upright(antenna):
+    if not is_vertical(antenna):
         raise SceneError(
-            f"antenna {antenna.describe()!r}: expected one that is the same all around and "
-            "polarised upright"
+            f"antenna {antenna.describe()!r}: expected a vertically polarised one that is "
+            "the same in all azimuths"
         )
-    return np.asarray(antenna.amplitudes(sine, np.zeros_like(sine)).upright, dtype=np.float64)
+    return np.asarray(antenna.amplitudes(sine, np.zeros_like(sine)).v, dtype=np.float64)
 
 
 def look_up(tables: tuple[Complexes, Complexes], direction: ArrayLike) -> Amplitudes:
@@ -209,10 +208,10 @@ def look_up(tables: tuple[Complexes, Complexes], direction: ArrayLike) -> Amplit
     row, column = table_coordinates(direction)
     i = np.minimum(row.astype(np.int64), ELEVATION_STEPS - 1)
     j = np.minimum(column.astype(np.int64), AZIMUTH_STEPS - 1)
-    v, w = row - i, column - j
-    upright, level = (
-        (1.0 - v) * ((1.0 - w) * t[i, j] + w * t[i, j + 1])
-        + v * ((1.0 - w) * t[i + 1, j] + w * t[i + 1, j + 1])
+    down, across = row - i, column - j
+    v, h = (
+        (1.0 - down) * ((1.0 - across) * t[i, j] + across * t[i, j + 1])
+        + down * ((1.0 - across) * t[i + 1, j] + across * t[i + 1, j + 1])
         for t in tables
     )
-    return Amplitudes(upright, level)
+    return Amplitudes(v, h)

@@ -1,4 +1,4 @@
-"""Building materials, and what a wall of them does to a plane wave.
+"""Building materials, and how a wall of them reflects and transmits a plane wave.
 
 A material is a `Dielectric` with a permittivity over frequency, a `Layered` stack of dielectrics,
 or one of two ideals: `PERFECT_CONDUCTOR` and `ABSORBER`. The built-in dielectrics are those of
@@ -12,17 +12,15 @@ from math import inf
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from raytrace.arrays import Complexes, Floats
 from raytrace.constants import TWO_PI, VACUUM_PERMITTIVITY
 from raytrace.errors import SceneError
 from raytrace.radio.itu import DEFAULT_EDITION, TABLES, Row
 from raytrace.radio.slabs import SlabCoefficients, slab_coefficients, stack_coefficients
 
-Floats = NDArray[np.float64]
-
 MATERIAL_EDITION = DEFAULT_EDITION
-"""The edition of ITU-R P.2040 that holds where none is asked for."""
+"""The edition of ITU-R P.2040 by default."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +35,7 @@ class Dielectric:
         ``eps_r = a f^b`` and ``sigma = c f^d`` [S/m], f in GHz, each for a range of frequencies;
         where ranges overlap the first counts.
     origin
-        Who says so, for messages.
+        Source of the rows, for messages.
     """
 
     name: str
@@ -88,7 +86,7 @@ class Layer(NamedTuple):
 
 @dataclass(frozen=True)
 class Layered:
-    """Layers one behind the other, the first one met first; plasterboard, air, plasterboard.
+    """A stack of layers, the first one met first, such as plasterboard, air, plasterboard.
 
     Attributes
     ----------
@@ -108,7 +106,7 @@ class Layered:
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether both sides reflect alike, as those of a wall must."""
+        """Whether both sides reflect alike, as a wall requires."""
         return self.layers == self.layers[::-1]
 
     def coefficients(
@@ -121,7 +119,7 @@ class Layered:
 
 @dataclass(frozen=True)
 class Ideal:
-    """A surface that reflects the same share at every angle and lets nothing through.
+    """A surface with one reflection coefficient at every angle, and no transmission.
 
     Attributes
     ----------
@@ -150,7 +148,7 @@ ABSORBER = Ideal("absorber", 0.0)
 VACUUM = Dielectric.of_law("vacuum", 1.0)
 AIR = Dielectric.of_law("air", 1.0)
 ANY_EDITION: dict[str, Material] = {m.name: m for m in (VACUUM, AIR, PERFECT_CONDUCTOR, ABSORBER)}
-"""Materials that no edition has a say about: vacuum and air at all frequencies, and the ideals."""
+"""Materials outside the Recommendation: vacuum and air at all frequencies, and the ideals."""
 
 
 def dielectrics_of(edition: str = DEFAULT_EDITION) -> dict[str, Dielectric]:
@@ -159,7 +157,7 @@ def dielectrics_of(edition: str = DEFAULT_EDITION) -> dict[str, Dielectric]:
     Raises
     ------
     SceneError
-        With the editions there are, for another one.
+        For an unknown edition; the message lists the known ones.
     """
     if edition not in TABLES:
         raise SceneError(
@@ -247,7 +245,7 @@ def slab_tables(slabs: Sequence[tuple[Material | str, float]], frequency_hz: flo
     ndarray
         (n_slabs, SLAB_TABLE_STEPS + 2, 4): real and imaginary parts of R_tm and of
         (R_te + R_tm) / sin^2 theta, at cosines 0, 1/n, ..., 1 and once more. The second is
-        what mixes the polarisations (docs/theory.md, eq. 12); it is smooth at normal incidence.
+        what couples the polarisations (docs/theory.md, eq. 12); it is smooth at normal incidence.
 
     Raises
     ------
@@ -286,7 +284,7 @@ def _at_all_angles(
     return found
 
 
-def _table(tm: NDArray[np.complex128], difference: NDArray[np.complex128]) -> Floats:
+def _table(tm: Complexes, difference: Complexes) -> Floats:
     """Columns (steps + 2, 4) of a coefficient and of a difference over sin^2 theta."""
     sin2 = 1.0 - np.linspace(0.0, 1.0, len(tm)) ** 2
     mix = np.empty_like(tm)

@@ -8,15 +8,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from raytrace.arrays import Complexes, Floats
 from raytrace.constants import SPEED_OF_LIGHT, TWO_PI
 
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
-
 GRAZING = 1e-12
-"""Smallest cosine of incidence told apart from 0."""
+"""Smallest cosine of incidence; smaller ones are set to it."""
 
 
 class SlabCoefficients(NamedTuple):
@@ -36,8 +33,8 @@ class SlabCoefficients(NamedTuple):
     ) -> "SlabCoefficients":
         """Return the same with transmission relative to air across the same thickness.
 
-        That is what a ray takes on when it goes through a sheet that the geometry has no
-        thickness for: its length already holds the phase of the way, so air gives 1 (eq. 28).
+        A wall is a sheet without thickness in the geometry: the ray's length already holds the
+        phase across it, so air gives 1 (eq. 28).
         """
         wavenumber = TWO_PI * frequency_hz / SPEED_OF_LIGHT
         ahead = np.exp(1j * wavenumber * thickness_m * np.asarray(cos_incidence))
@@ -57,7 +54,7 @@ def stack_coefficients(
     """Coefficients of layers in air.
 
     The recursion runs from the last interface to the first, eqs. 26-27. It is the transfer-matrix
-    method written so that only decaying exponentials occur: metal of any thickness is no problem.
+    method written with decaying exponentials only, so metal of any thickness does not overflow.
 
     Parameters
     ----------

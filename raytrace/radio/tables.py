@@ -13,8 +13,8 @@ from raytrace.radio.antennas import (
     Antenna,
     HalfWaveDipole,
     antenna_tables,
-    is_upright,
-    upright_amplitude,
+    is_vertical,
+    vertical_amplitude,
 )
 from raytrace.radio.materials import SLAB_TABLE_STEPS, Slab, slab_tables, transmission_tables
 from raytrace.radio.transmitter import Transmitter
@@ -56,7 +56,7 @@ def make_radio(
 
 def _antennas(transmit: Antenna, receive: Antenna) -> dict[str, Any]:
     """Tables of both antennas: over the elevation alone where that is all they depend on."""
-    if is_upright(transmit) and is_upright(receive):
+    if is_vertical(transmit) and is_vertical(receive):
         tables = antenna_table(transmit), antenna_table(receive)
         return {
             "transmit": tables[0],
@@ -77,7 +77,7 @@ def _antennas(transmit: Antenna, receive: Antenna) -> dict[str, Any]:
 
 def antenna_table(antenna: Antenna) -> Floats:
     """Tabulate an antenna's amplitude over the z component of the direction, -1 to 1."""
-    amplitude = upright_amplitude(antenna, np.linspace(-1.0, 1.0, ANTENNA_STEPS + 1))
+    amplitude = vertical_amplitude(antenna, np.linspace(-1.0, 1.0, ANTENNA_STEPS + 1))
     return np.append(amplitude, amplitude[-1])
 
 

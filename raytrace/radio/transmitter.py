@@ -1,4 +1,4 @@
-"""The transmitter: where it is, how strong, at which frequency."""
+"""The transmitter: position, power, frequency, antenna."""
 
 from dataclasses import dataclass, field
 
@@ -28,7 +28,7 @@ class Transmitter:
     antenna: Antenna = field(default_factory=HalfWaveDipole)
 
     def __post_init__(self) -> None:
-        """Check the numbers; raise ValueError where one cannot be."""
+        """Check the numbers; raise ValueError for one that is not finite."""
         position = tuple(float(c) for c in self.position)
         if len(position) != 3 or not all(abs(c) < float("inf") for c in position):
             raise ValueError(f"position = {self.position}: expected three finite numbers [m]")

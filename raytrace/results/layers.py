@@ -5,10 +5,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from raytrace.arrays import Floats
 from raytrace.constants import SPEED_OF_LIGHT
 from raytrace.kernels.tracing import COSINE, DETOUR, DETOUR_SQUARED, SINE, STRONGEST, Sums
-
-Floats = NDArray[np.float64]
 
 
 class LayerInfo(NamedTuple):
@@ -36,14 +35,14 @@ LAYERS: dict[str, LayerInfo] = {
 
 
 def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDArray[Any]]:
-    """Layers of a map, by the names of `RadioMap`, of n receivers.
+    """Return the layers of a map of n receivers, by name.
 
     Parameters
     ----------
     sums
         Over all paths.
     straight_m
-        (n,) straight from the source to each receiver [m].
+        (n,) distance from the transmitter to each receiver [m].
     power_dbm
         Transmit power [dBm].
     """

@@ -1,8 +1,8 @@
-"""Radio maps in HDF5: readable without this project, whole or not there at all.
+"""Radio maps in HDF5: readable without this project, and never half-written.
 
 `x` and `y` are dimension scales [m], so xarray opens a map with coordinates; every dataset has
-`units` and `long_name`. What made the map stands in the file's attributes; the pattern of an
-antenna given by a table stands in the group `transmit_antenna`.
+`units` and `long_name`. The file's attributes store what made the map; the group
+`transmit_antenna` stores the pattern of an antenna given by a table.
 """
 
 from collections.abc import Mapping
@@ -75,7 +75,7 @@ class MapContents(Protocol):
 
 
 def write_map_file(radio_map: MapContents, path: Path) -> None:
-    """Write a map; a run that is killed leaves the old file or none."""
+    """Write a map; an interrupted write leaves the old file or none."""
     content = hdf5_bytes(lambda file: _write(radio_map, file))
     with atomic_write(path) as temporary:
         temporary.write_bytes(content)
@@ -230,7 +230,7 @@ def _array(file: h5py.File, name: str) -> NDArray[Any]:
 
 
 def _config(attributes: dict[str, Any]) -> TraceConfig:
-    """Limits of the trace; those that the file does not name have their defaults."""
+    """Limits of the trace; those missing in the file have their defaults."""
     known = {f.name for f in fields(TraceConfig)} & set(attributes)
     return TraceConfig(**{name: _plain(attributes[name]) for name in known})
 

@@ -1,24 +1,22 @@
-"""What a receiver's paths amount to: powers, delays, directions (docs/theory.md, section 13).
+"""Statistics of a receiver's paths: powers, delays, directions (docs/theory.md, section 13).
 
-The map's kernels sum the same up cell by cell; this is the plain computation from single paths.
+The map's kernels compute the same sums per cell; this is the plain computation from single paths.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from raytrace.arrays import Floats, Ints
 from raytrace.results.paths import Paths
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class PathStatistics:
     """Statistics of n receivers, each weighted with the paths' power gains.
 
-    A receiver without a path, or whose every path meets a null of an antenna, has levels of -inf
-    and 0 for the rest.
+    A receiver without a path, or with every path in a null of an antenna, has levels of -inf and
+    0 for the rest.
 
     Attributes
     ----------
@@ -38,7 +36,7 @@ class PathStatistics:
         (n,) strongest path over the sum of all others [dB], eq. 37; inf for a single path.
     """
 
-    path_count: NDArray[np.int64]
+    path_count: Ints
     rss_dbm: Floats
     rss_coherent_dbm: Floats
     strongest_path_dbm: Floats
@@ -69,16 +67,17 @@ class PathStatistics:
         azimuth = paths.arrival[:, 0]
         east, north = sums.mean(np.cos(azimuth)), sums.mean(np.sin(azimuth))
         spread = np.sqrt(np.maximum(1.0 - east**2 - north**2, 0.0))
-        field = sums.of(paths.share * paths.gain.real) + 1j * sums.of(paths.share * paths.gain.imag)
+        gain = paths.weight * paths.gain
+        field = sums.of(gain.real) + 1j * sums.of(gain.imag)
         return cls(
-            path_count=np.floor(sums.of(paths.share) + 0.5).astype(np.int64),
+            path_count=np.floor(sums.of(paths.weight) + 0.5).astype(np.int64),
             rss_dbm=power_dbm + _decibels(power),
             rss_coherent_dbm=power_dbm + _decibels(np.abs(field) ** 2),
             strongest_path_dbm=power_dbm + _decibels(strongest),
             mean_delay_s=mean_s,
             delay_spread_s=np.sqrt(variance),
             angular_spread=np.where(power > 0.0, spread, 0.0),
-            k_factor_db=_k_factor_db(strongest, power, sums.of(paths.share)),
+            k_factor_db=_k_factor_db(strongest, power, sums.of(paths.weight)),
         )
 
 
@@ -86,7 +85,7 @@ class _Sums:
     """Sums over each receiver's paths, plain and weighted with power."""
 
     def __init__(self, paths: Paths, n_receivers: int) -> None:
-        self.power = paths.share * np.abs(paths.gain) ** 2
+        self.power = paths.weight * np.abs(paths.gain) ** 2
         self._receiver = paths.receiver
         self._n = n_receivers
         self._total = self.of(self.power)

@@ -1,4 +1,4 @@
-"""Single paths: where they go, what they meet, how strong they arrive."""
+"""Single paths: their points, interactions and gains."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from raytrace.arrays import Complexes, Floats, Int8s, Ints
 from raytrace.constants import SPEED_OF_LIGHT
 from raytrace.extras import needs_extra
 from raytrace.kernels.path_points import DIFFRACTION, NOTHING, REFLECTION, TRANSMISSION
@@ -27,8 +27,8 @@ class Paths:
     receiver
         (n,) int64 which receiver each path reaches.
     interactions
-        (n, most) int8 what happens on the way: 1 reflection, 2 diffraction,
-        3 transmission, 0 no more.
+        (n, most) int8 interactions in their order: 1 reflection, 2 diffraction, 3 transmission;
+        0 after the last.
     vertices
         (n, most + 2, 3) [m] transmitter, points of interaction, receiver; the receiver is
         repeated to the end.
@@ -37,62 +37,62 @@ class Paths:
     gain
         (n,) complex path gain with both antennas: its squared magnitude is received over
         transmitted power, and the gains of a receiver's paths add up to its coherent field.
-    share
-        (n,) 1, or less for a path that goes through a corner or rim and so exists on one side of
-        the receiver only: it counts that much in sums (docs/conventions.md, "Ties").
+    weight
+        (n,) what a path counts for in sums: 1, or less for a path that grazes a corner or an edge
+        and so exists on one side of the receiver only (docs/conventions.md, "Grazing rays").
     """
 
-    receiver: NDArray[np.int64]
-    interactions: NDArray[np.int8]
-    vertices: NDArray[np.float64]
-    length_m: NDArray[np.float64]
-    gain: NDArray[np.complex128]
-    share: NDArray[np.float64]
+    receiver: Ints
+    interactions: Int8s
+    vertices: Floats
+    length_m: Floats
+    gain: Complexes
+    weight: Floats
 
     def __len__(self) -> int:
         """Number of paths."""
         return len(self.receiver)
 
     @property
-    def delay_s(self) -> NDArray[np.float64]:
+    def delay_s(self) -> Floats:
         """(n,) time of flight [s]."""
         return self.length_m / SPEED_OF_LIGHT
 
     @property
-    def gain_db(self) -> NDArray[np.float64]:
+    def gain_db(self) -> Floats:
         """(n,) path gain [dB], 20 log10 of its magnitude; -inf where an antenna has its null."""
         with np.errstate(divide="ignore"):
             return 20.0 * np.log10(np.abs(self.gain))
 
     @property
-    def n_interactions(self) -> NDArray[np.int64]:
+    def n_interactions(self) -> Ints:
         """(n,) number of reflections and diffractions."""
         return np.count_nonzero(self.interactions, axis=1)
 
     @property
-    def departure(self) -> NDArray[np.float64]:
+    def departure(self) -> Floats:
         """(n, 2) direction at the transmitter: azimuth from +x, zenith angle [rad]."""
         return _angles(self.vertices[:, 1] - self.vertices[:, 0])
 
     @property
-    def arrival(self) -> NDArray[np.float64]:
-        """(n, 2) where the receiver sees the path come from: azimuth, zenith angle [rad]."""
+    def arrival(self) -> Floats:
+        """(n, 2) direction from the receiver to the incoming path: azimuth, zenith angle [rad]."""
         rows = np.arange(len(self))
         last = self.n_interactions
         return _angles(self.vertices[rows, last] - self.vertices[rows, last + 1])
 
     def sequence(self, path: int) -> str:
-        """Interactions of one path in words, "RRD" for example; "LOS" for none."""
+        """Interactions of one path as letters, such as "RRD"; "LOS" for none."""
         return "".join(INTERACTION_NAMES[int(k)] for k in self.interactions[path]) or "LOS"
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Return a tidy table, a row a path; pandas is needed (``pip install "rssnav[data]"``).
+        """Return a tidy table, one row per path; pandas is needed (``pip install "rssnav[data]"``).
 
         Returns
         -------
         pandas.DataFrame
             Columns ``receiver``, ``sequence`` (as `sequence` writes it), ``n_reflections``,
-            ``n_diffractions``, ``n_transmissions``, ``length_m``, ``delay_s``, ``share``,
+            ``n_diffractions``, ``n_transmissions``, ``length_m``, ``delay_s``, ``weight``,
             ``gain_real``, ``gain_imag``, ``gain_db``, and the azimuth and zenith angles [rad]
             ``departure_azimuth``, ``departure_zenith``, ``arrival_azimuth``, ``arrival_zenith``.
         """
@@ -108,7 +108,7 @@ class Paths:
                 "n_transmissions": np.count_nonzero(self.interactions == TRANSMISSION, axis=1),
                 "length_m": self.length_m,
                 "delay_s": self.delay_s,
-                "share": self.share,
+                "weight": self.weight,
                 "gain_real": self.gain.real,
                 "gain_imag": self.gain.imag,
                 "gain_db": self.gain_db,
@@ -130,14 +130,14 @@ class Paths:
         """Sample each receiver's channel, band-limited to a bandwidth (docs/theory.md, eq. 39).
 
         The taps are ``sum of gain_i sinc(n - B (tau_i - start))``, 1 / B apart: the complex
-        baseband channel around the carrier, whose phase the gains hold already.
+        baseband channel around the carrier, whose phase is part of the gains.
 
         Parameters
         ----------
         bandwidth_hz
             B [Hz].
         n_taps
-            How many; by default 16 more than reach the latest path.
+            How many; by default 16 after the latest path.
         start_s
             Delay of the first tap [s].
         n_receivers
@@ -158,7 +158,7 @@ class Paths:
         channel = np.zeros((most, taps), dtype=np.complex128)
         shift = bandwidth_hz * (self.delay_s - start_s)
         for n in range(taps):
-            np.add.at(channel[:, n], self.receiver, self.share * self.gain * np.sinc(n - shift))
+            np.add.at(channel[:, n], self.receiver, self.weight * self.gain * np.sinc(n - shift))
         return ImpulseResponse(channel, start_s + np.arange(taps) / bandwidth_hz)
 
     def at(self, receiver: int) -> Paths:
@@ -166,8 +166,8 @@ class Paths:
         return self.rows(np.flatnonzero(self.receiver == receiver))
 
     def with_halves_joined(self) -> Paths:
-        """Return the same paths, those that two beams found half each at a tie made one."""
-        half = np.flatnonzero(self.share < 1.0)
+        """Return the same paths, with those merged that two beams each found half of (grazing)."""
+        half = np.flatnonzero(self.weight < 1.0)
         if not len(half):
             return self
         where = np.round(self.vertices[half].reshape(len(half), -1), 6)
@@ -175,26 +175,26 @@ class Paths:
         _, first, group = np.unique(key, axis=0, return_index=True, return_inverse=True)
         gain = self.gain[half][first][group]
         alike = np.abs(self.gain[half] - gain) <= 1e-9 * np.abs(gain)
-        share = self.share.copy()
-        share[half[first]] = np.bincount(group, self.share[half] * alike, len(first))
+        weight = self.weight.copy()
+        weight[half[first]] = np.bincount(group, self.weight[half] * alike, len(first))
         kept = np.ones(len(self), bool)
         kept[half] = ~alike
         kept[half[first]] = True
-        return replace(self, share=share).rows(np.flatnonzero(kept))
+        return replace(self, weight=weight).rows(np.flatnonzero(kept))
 
     def strongest_first(self) -> Paths:
         """Return the same paths, receiver by receiver, strongest first."""
         return self.rows(np.lexsort([self.length_m, -np.abs(self.gain), self.receiver]))
 
-    def rows(self, rows: NDArray[np.int64]) -> Paths:
-        """Return some of the paths, by their numbers, in the order of these."""
+    def rows(self, rows: Ints) -> Paths:
+        """Return the paths of the given row numbers, in that order."""
         return Paths(
             self.receiver[rows],
             self.interactions[rows],
             self.vertices[rows],
             self.length_m[rows],
             self.gain[rows],
-            self.share[rows],
+            self.weight[rows],
         )
 
 
@@ -210,11 +210,11 @@ class ImpulseResponse:
         (n_taps,) [s].
     """
 
-    taps: NDArray[np.complex128]
-    delay_s: NDArray[np.float64]
+    taps: Complexes
+    delay_s: Floats
 
 
-def _angles(direction: NDArray[np.float64]) -> NDArray[np.float64]:
+def _angles(direction: Floats) -> Floats:
     azimuth = np.arctan2(direction[:, 1], direction[:, 0])
     zenith = np.arctan2(np.hypot(direction[:, 0], direction[:, 1]), direction[:, 2])
     return np.column_stack([azimuth, zenith])

@@ -1,4 +1,4 @@
-"""A radio map: what a receiver in each cell of a grid reads, and how it was made."""
+"""A radio map: what a receiver in each cell of a grid receives, and how it was made."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from numpy.typing import NDArray
 
+from raytrace.arrays import Floats, Ints
 from raytrace.config import TraceConfig
 from raytrace.extras import needs_extra
 from raytrace.grid import Grid
@@ -19,14 +19,12 @@ from raytrace.results.map_file import attributes_of, read_map_file, write_map_fi
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(frozen=True, eq=False)
 class RadioMap:
-    """Received signal strength over a grid, and what else was asked for.
+    """Received signal strength over a grid, and further layers.
 
-    A layer that was not computed is None. `raytrace.PathStatistics` says what the layers mean.
+    A layer that was not computed is None. `raytrace.PathStatistics` defines the layers.
 
     Attributes
     ----------
@@ -58,7 +56,7 @@ class RadioMap:
 
     rss_dbm: Floats
     rss_coherent_dbm: Floats
-    path_count: NDArray[np.int64]
+    path_count: Ints
     grid: Grid
     transmitter: Transmitter
     config: TraceConfig
@@ -74,12 +72,12 @@ class RadioMap:
 
     @property
     def layers(self) -> dict[str, NDArray[Any]]:
-        """The layers there are, by name, in the order of `LAYERS`."""
+        """The computed layers by name, in the order of `LAYERS`."""
         found = {name: getattr(self, name) for name in LAYERS}
         return {name: layer for name, layer in found.items() if layer is not None}
 
     def with_plan(self, text: str, sha256: str) -> RadioMap:
-        """Return the same map, marked as the map of a plan."""
+        """Return the same map with its plan stored in it."""
         return replace(self, plan_text=text, plan_sha256=sha256)
 
     def to_xarray(self) -> xr.Dataset:
@@ -88,8 +86,8 @@ class RadioMap:
         Returns
         -------
         xarray.Dataset
-            A variable (y, x) a layer, with `units` and `long_name`; coordinates `x` and `y` of the
-            cell centres [m] and `z` of the receivers; what made the map as attributes.
+            One variable (y, x) per layer, with `units` and `long_name`; coordinates `x` and `y` of
+            the cell centres [m] and `z` of the receivers; what made the map as attributes.
         """
         with needs_extra("data"):
             import xarray as xr

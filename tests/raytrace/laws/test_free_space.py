@@ -15,7 +15,7 @@ from raytrace import (
     trace_paths,
 )
 from raytrace.constants import SPEED_OF_LIGHT
-from raytrace.radio.antennas import upright_amplitude
+from raytrace.radio.antennas import vertical_amplitude
 
 HALL = box(64.0, 32.0)
 DIRECT = TraceConfig(max_reflections=0, max_diffractions=0)
@@ -78,7 +78,7 @@ def test_a_lossless_dipole_gains_2_15_db_at_each_end() -> None:
 def test_the_peak_gain_is_that_of_a_lossless_dipole() -> None:
     """All power fed leaves: the mean of the power gain over the sphere is 1."""
     cos_theta = np.linspace(-1.0, 1.0, 200_001)
-    power = upright_amplitude(HalfWaveDipole(DIPOLE_PEAK_GAIN_DBI), cos_theta) ** 2
+    power = vertical_amplitude(HalfWaveDipole(DIPOLE_PEAK_GAIN_DBI), cos_theta) ** 2
     assert 0.5 * np.trapezoid(power, cos_theta) == pytest.approx(1.0, abs=1e-5)
 
 

@@ -64,7 +64,7 @@ def reverse(paths: Paths) -> Paths:
         vertices[k, n + 2 :] = paths.vertices[k, 0]
         kinds[k, :n] = paths.interactions[k, :n][::-1]
         kinds[k, n:] = NOTHING
-    return Paths(paths.receiver, kinds, vertices, paths.length_m, paths.gain, paths.share)
+    return Paths(paths.receiver, kinds, vertices, paths.length_m, paths.gain, paths.weight)
 
 
 @given(seed=seeds, n_walls=n_inside)

@@ -28,7 +28,7 @@ def field(building: Building, receivers: NDArray[np.float64], limits: TraceConfi
     source = Transmitter(SOURCE, antenna=Isotropic())
     paths = trace_paths(building.scene, source, receivers, limits, receive_antenna=Isotropic())
     total = np.zeros(len(receivers), np.complex128)
-    np.add.at(total, paths.receiver, paths.share * paths.gain)
+    np.add.at(total, paths.receiver, paths.weight * paths.gain)
     return total
 
 

@@ -22,7 +22,7 @@ from raytrace.radio.antennas import (
     ELEVATION_STEPS,
     antenna_tables,
     look_up,
-    upright_amplitude,
+    vertical_amplitude,
 )
 
 Floats = NDArray[np.float64]
@@ -53,11 +53,11 @@ def field(antenna: Antenna, direction: Floats) -> NDArray[np.complex128]:
     """Vector field (n, 3) towards directions (n, 3), from the two components."""
     x, y, z = direction.T
     azimuth = np.arctan2(y, x)
-    upright, level = antenna.amplitudes(z, azimuth)
+    v, h = antenna.amplitudes(z, azimuth)
     c = np.sqrt(1.0 - z**2)
     tau = np.column_stack([-z * np.cos(azimuth), -z * np.sin(azimuth), c])
     psi = np.column_stack([-np.sin(azimuth), np.cos(azimuth), 0.0 * z])
-    return np.asarray(upright)[:, None] * tau + np.asarray(level)[:, None] * psi
+    return np.asarray(v)[:, None] * tau + np.asarray(h)[:, None] * psi
 
 
 @given(axis=directions, direction=directions)
@@ -72,12 +72,12 @@ def test_a_dipole_radiates_along_the_projection_of_its_wire(
     np.testing.assert_allclose(found, expected, atol=1e-6)
 
 
-def test_an_upright_dipole_is_the_textbook_pattern() -> None:
+def test_a_vertical_dipole_is_the_textbook_pattern() -> None:
     theta = np.linspace(0.01, np.pi - 0.01, 99)
-    upright, level = HalfWaveDipole().amplitudes(np.cos(theta), 0.7 + 0.0 * theta)
+    v, h = HalfWaveDipole().amplitudes(np.cos(theta), 0.7 + 0.0 * theta)
     expected = np.cos(0.5 * np.pi * np.cos(theta)) / np.sin(theta)
-    np.testing.assert_allclose(upright, expected, rtol=1e-9)
-    assert not level.any()
+    np.testing.assert_allclose(v, expected, rtol=1e-9)
+    assert not h.any()
 
 
 @pytest.mark.parametrize("axis", [(0, 0, 1), (1, 0, 0), (1, 2, -3)])
@@ -93,8 +93,8 @@ def test_tables_hold_the_pattern_to_1e_4(antenna: Antenna) -> None:
     s = np.concatenate([around_the_sphere(20_000), np.eye(3), 0.0 - np.eye(3)])
     found = look_up(antenna_tables(antenna), s)
     exact = antenna.amplitudes(s[:, 2], np.arctan2(s[:, 1], s[:, 0]))
-    assert np.abs(found.upright - exact.upright).max() < 1e-4
-    assert np.abs(found.level - exact.level).max() < 1e-4
+    assert np.abs(found.v - exact.v).max() < 1e-4
+    assert np.abs(found.h - exact.h).max() < 1e-4
 
 
 def test_tables_close_around_the_vertical() -> None:
@@ -104,8 +104,8 @@ def test_tables_close_around_the_vertical() -> None:
 
 
 def test_the_tracer_says_which_antennas_it_takes() -> None:
-    with pytest.raises(SceneError, match=r"along \(1, 0, 0\).*the same all around"):
-        upright_amplitude(HalfWaveDipole(axis=(1.0, 0.0, 0.0)), np.linspace(-1.0, 1.0, 9))
+    with pytest.raises(SceneError, match=r"along \(1, 0, 0\).*the same in all azimuths"):
+        vertical_amplitude(HalfWaveDipole(axis=(1.0, 0.0, 0.0)), np.linspace(-1.0, 1.0, 9))
 
 
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 0.0), (np.nan, 0.0, 1.0)])
@@ -121,19 +121,19 @@ PATCH_DBI = 6.0 * np.cos(np.radians(THETA))[:, None] - 2.0 * np.cos(np.radians(P
 def test_a_gain_table_is_met_at_its_nodes() -> None:
     antenna = PatternTable.of_gain(THETA, PHI, PATCH_DBI)
     theta, phi = np.meshgrid(np.radians(THETA[1:-1]), np.radians(PHI[:-1]), indexing="ij")
-    upright, level = antenna.amplitudes(np.cos(theta), phi)
-    np.testing.assert_allclose(20.0 * np.log10(np.abs(upright)), PATCH_DBI[1:-1, :-1], atol=1e-9)
-    assert (upright.real > 0.0).all()
-    assert not level.any()
+    v, h = antenna.amplitudes(np.cos(theta), phi)
+    np.testing.assert_allclose(20.0 * np.log10(np.abs(v)), PATCH_DBI[1:-1, :-1], atol=1e-9)
+    assert (v.real > 0.0).all()
+    assert not h.any()
 
 
 def test_a_dipole_as_a_table_is_the_dipole() -> None:
     theta, phi = np.linspace(0.0, 180.0, 181), np.linspace(0.0, 360.0, 181)
     dipole = HalfWaveDipole(DIPOLE_PEAK_GAIN_DBI, (1.0, 1.0, 0.5))
-    upright, level = dipole.amplitudes(
+    v, h = dipole.amplitudes(
         *np.meshgrid(np.cos(np.radians(theta)), np.radians(phi), indexing="ij")
     )
-    antenna = PatternTable(theta, phi, -upright + 0j, level + 0j)
+    antenna = PatternTable(theta, phi, -v + 0j, h + 0j)
     s = around_the_sphere(999)
     np.testing.assert_allclose(field(antenna, s), field(dipole, s), atol=1e-3)
     assert antenna.mean_gain == pytest.approx(1.0, abs=1e-3)
