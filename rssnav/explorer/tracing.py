@@ -73,7 +73,7 @@ class TracedMap:
     Attributes
     ----------
     plan : FloorPlan
-        Plan with the map's transmitter; the start may have moved since.
+        Its source is the transmitter of a complete map; the start may have moved since.
     settings : MapSettings
     radio_map : RadioMap
     complete : bool
@@ -216,20 +216,26 @@ class MapTracer:
         self, plan: FloorPlan, settings: MapSettings, source: Position, ticket: Ticket
     ) -> None:
         try:
-            self._finish(self._stage(replace(plan, source=source), settings, False, ticket), ticket)
+            dragged = replace(settings.transmitter(plan), position=source)
+            self._finish(self._stage(plan, settings, False, ticket, dragged), ticket)
         except (PlanError, SceneError, ValueError):
             ticket.check()
         self.progress = None
 
     def _stage(
-        self, plan: FloorPlan, settings: MapSettings, complete: bool, ticket: Ticket
+        self,
+        plan: FloorPlan,
+        settings: MapSettings,
+        complete: bool,
+        ticket: Ticket,
+        transmitter: Transmitter | None = None,
     ) -> TracedMap:
-        """Trace one map."""
+        """Trace one map, by default of the plan's source."""
         grid = settings.grid(plan)
         self._limits.check_grid(plan, grid)
         radio_map = compute_radio_map(
             self._scenes.of(plan),
-            settings.transmitter(plan),
+            transmitter or settings.transmitter(plan),
             grid,
             TraceConfig(settings.max_reflections, int(complete)),
             progress=self._watch(complete, ticket),

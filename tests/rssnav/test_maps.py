@@ -12,7 +12,7 @@ from cli_plans import ROOM, edited
 import floorplans
 from raytrace import MapFileError, RadioMap, SceneError, TraceConfig
 from rssnav.maps import make_map, require_map_for
-from rssnav.scenes import scene_of
+from rssnav.scenes import PlanScene, scene_of
 
 QUICK = TraceConfig(max_reflections=1, max_diffractions=0)
 
@@ -176,6 +176,28 @@ def test_interrupted_map_leaves_the_old_file(plan, made) -> None:
 def test_receivers_lie_between_floor_and_ceiling(plan, height_m) -> None:
     with pytest.raises(ValueError, match=r"height_m = .*above 0 and below 3 m"):
         make_map(plan, height_m=height_m, config=QUICK)
+
+
+def test_one_scene_serves_maps_of_other_sources_and_heights(plan, monkeypatch) -> None:
+    scene = PlanScene.of(plan)
+    moved = replace(plan, source=(4.3, 2.2, 1.1), name="moved")
+    expected = make_map(moved, config=QUICK, height_m=1.2)
+    monkeypatch.setattr("rssnav.maps.scene_of", None)
+    found = make_map(moved, config=QUICK, height_m=1.2, scene=scene)
+    for name, layer in expected.layers.items():
+        assert np.array_equal(layer, found.layers[name])
+    assert found.plan_sha256 == moved.sha256
+
+
+@pytest.mark.parametrize(
+    "options", [{"edition": "P.2040-1"}, {"plan": edited("thickness_m = 0.1", "thickness_m = 0.2")}]
+)
+def test_scene_of_another_building_is_refused(plan, options) -> None:
+    scene = PlanScene.of(plan)
+    if "plan" in options:
+        plan = floorplans.loads(options.pop("plan"))
+    with pytest.raises(ValueError, match=r"does not fit plan 'room'.*PlanScene\.of"):
+        make_map(plan, config=QUICK, scene=scene, **options)
 
 
 def test_map_of_another_plan_is_refused(plan, made) -> None:

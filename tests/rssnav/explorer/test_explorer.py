@@ -16,7 +16,7 @@ from cli_plans import run
 
 import floorplans
 import rssnav
-from floorplans import PlanError
+from floorplans import FloorPlan, PlanError
 from floorplans.geojson_plan import dumps_geojson
 from raytrace import RadioMap, TraceConfig
 from rssnav.explorer.background import NewestOnly, SupersededError
@@ -124,6 +124,17 @@ def test_last_map_stays_until_the_new_one_is_there(session) -> None:
         seen += [session.maps.latest] if session.maps.latest is not seen[-1] else []
     assert [traced.complete for traced in seen[:2]] == [True, False]
     assert session.complete_map.radio_map.transmitter.position == (7.3, 2.2, FLAT.source[2])
+
+
+def test_map_and_paths_of_a_moved_source_share_one_scene(session, monkeypatch) -> None:
+    built: list[FloorPlan] = []
+    monkeypatch.setattr("rssnav.explorer.tracing.PlanScene.of", built.append)
+    session.move_source(7.3, 2.2)
+    session.choose_cell(5.2, 2.2)
+    wait_for_map(session)
+    wait_for(lambda: not session.paths.busy)
+    assert session.paths.latest is not None
+    assert built == []
 
 
 def test_a_preview_has_reflections_only_and_is_no_complete_map(session) -> None:
