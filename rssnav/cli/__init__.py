@@ -43,4 +43,4 @@ def main(
         ),
     ] = False,
 ) -> None:
-    """Exact indoor radio maps, and a UAV that learns to fly through them to a hidden phone."""
+    """Complete indoor radio maps by ray tracing, and UAVs that learn to navigate by them."""
