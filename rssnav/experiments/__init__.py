@@ -1,1 +1,1 @@
-"""The paper, and studies beyond it."""
+"""Experiments: the paper's figures, tables and claims, and studies beyond the paper."""

@@ -2,8 +2,8 @@
 
 An interval is the central 95 % of a statistic over resamples of the realisations with
 replacement (percentile bootstrap; Efron and Tibshirani, An Introduction to the Bootstrap, 1993,
-ch. 13). Trainings of different configurations are independent, so each is resampled on its own.
-The resamples are drawn from a fixed seed: the same data gives the same interval.
+ch. 13). Trainings of different configurations are independent, so each is resampled separately.
+The seed of the resampling is fixed: the same data gives the same interval.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Estimate:
     value : float
         The statistic of the data itself.
     low, high : float
-        Ends of the interval.
+        Limits of the interval.
     """
 
     value: float
@@ -45,14 +45,14 @@ def mean(values: ArrayLike) -> Estimate:
 
 
 def difference(first: ArrayLike, second: ArrayLike) -> Estimate:
-    """Mean over the realisations (R1,) of one training minus that of another's (R2,)."""
+    """Mean over the realisations (R1,) of one training minus that of another (R2,)."""
     a, b = _realisations(first), _realisations(second)
     resampled = _resampled_means(a, 0) - _resampled_means(b, 1)
     return _estimate(float(a.mean() - b.mean()), resampled)
 
 
 def ratio(first: ArrayLike, second: ArrayLike) -> Estimate:
-    """Mean over the realisations (R1,) of one training over that of another's (R2,), positive."""
+    """Mean over the realisations (R1,) of one training over that of another (R2,), positive."""
     a, b = _realisations(first), _realisations(second)
     if b.min() <= 0.0:
         raise ValueError("ratio: the second values must be positive")

@@ -1,4 +1,4 @@
-"""The paper: data, trainings, figures, tables, claims, report, and the run that makes them."""
+"""The paper: trainings, figures, tables, claims and the report; :func:`run_paper` makes them."""
 
 from rssnav.experiments.paper.run import Paper, report_again, run_paper
 

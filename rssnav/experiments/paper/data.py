@@ -83,8 +83,7 @@ class PaperData:
     results : mapping of Configuration to TrainingResult
         Trainings.
     first_episodes : mapping of Configuration to FirstEpisodes
-        Visits and policies of each realisation in its first episodes, for the trainings whose
-        visits the paper shows.
+        First episodes of each realisation, for :data:`VISITS_CONFIGURATIONS`.
     """
 
     scenarios: Mapping[int, Scenario]
@@ -107,16 +106,16 @@ class PaperData:
 
     @cached_property
     def shortest_in_metres(self) -> dict[tuple[int, int], Path]:
-        """Shortest flight by length, by (scenario, speed)."""
+        """Shortest flight in metres, by (scenario, speed)."""
         return {key: shortest_path(*world, "metres") for key, world in self._worlds().items()}
 
     @cached_property
     def shortest_in_steps(self) -> dict[tuple[int, int], Path]:
-        """Flight of fewest steps, the shortest such, by (scenario, speed)."""
+        """Shortest flight in steps, by (scenario, speed); of several, the shortest in metres."""
         return {key: shortest_path(*world, "steps") for key, world in self._worlds().items()}
 
     def _worlds(self) -> dict[tuple[int, int], tuple[GridWorld, NDArray[np.bool_]]]:
-        """World and terminal states of each (scenario, speed), by the location agent's rule."""
+        """World and the location agent's terminal states, by (scenario, speed)."""
         return {
             (key.scenario, key.speed): (result.world, terminal_states(result))
             for key, result in self.results.items()

@@ -1,9 +1,9 @@
-"""The first episodes of each realisation alone: its visits, and the policy it has learned.
+"""The first episodes of each realisation: its visits, and the policy it has learned.
 
-A training keeps visit counts summed over its realisations, and its final flights are those at
-convergence. Each realisation can be repeated alone, step for step, so its first episodes are
-flown once more: that gives visits per realisation, for intervals over realisations, and the
-greedy flight as it is after the episodes that the paper shows.
+A training stores visits summed over its realisations, and its final flights are those at
+convergence. Each realisation can be repeated separately, step for step, so its first episodes are
+trained again: this gives visits per realisation, for intervals over realisations, and the greedy
+flight after the episodes that the paper shows.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from rssnav.training import train
 
 @dataclass(frozen=True, eq=False)
 class FirstEpisodes:
-    """What the realisations (R of them) of a training did in their first episodes.
+    """Visits and flights of R realisations in their first episodes.
 
     Attributes
     ----------
     early : int
         Episodes that the visits are counted over.
     visits : (R, S) int64
-        Visits of each state in these.
+        Visits of each state in these episodes.
     episodes : int
-        Episodes after which the policy is looked at.
+        Episodes after which the policy is evaluated.
     reached : (R,) bool
-        Whether the greedy flight then reaches the source.
+        Whether the greedy flight of this policy reaches the source.
     path_steps : (R,) int64
         Steps of that flight.
     """
@@ -62,9 +62,9 @@ def first_episodes(
     early : int
         Episodes to count visits over.
     episodes : int
-        Episodes to fly, at least as many.
+        Episodes to train, at least ``early``.
     threads : int, optional
-        Threads that realisations are spread over.
+        Threads; realisations run in parallel.
     progress : callable, optional
         Called as ``progress(done, runs)``.
     """
@@ -82,16 +82,16 @@ def first_episodes(
             threads=1,
         )
 
-    alone: list[TrainingResult] = []
+    repeated: list[TrainingResult] = []
     with ThreadPoolExecutor(n_threads(threads)) as pool:
         for each in pool.map(repeat, result.run_ids.tolist()):
-            alone.append(each)
+            repeated.append(each)
             if progress is not None:
-                progress(len(alone), result.run_ids.size)
+                progress(len(repeated), result.run_ids.size)
     return FirstEpisodes(
         early,
-        np.concatenate([each.visit_counts for each in alone]),
+        np.concatenate([each.visit_counts for each in repeated]),
         episodes,
-        np.concatenate([each.reached for each in alone]),
-        np.concatenate([each.path_steps for each in alone]),
+        np.concatenate([each.reached for each in repeated]),
+        np.concatenate([each.path_steps for each in repeated]),
     )

@@ -1,7 +1,7 @@
-"""The report of a run of the paper: one HTML file that needs nothing beside it, and a summary.
+"""The report of a run of the paper: one self-contained HTML file, and a JSON summary.
 
-The pictures are embedded, the style is inline, and nothing is loaded from anywhere, so the file
-can be mailed, archived and printed. The page is ``templates/report.html.j2``.
+Pictures and styles are embedded and nothing is loaded, so the file can be mailed, archived and
+printed. Its template is ``templates/report.html.j2``.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ _VERDICTS = ("reproduced", "inconclusive", "not reproduced")
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as the report shows it.
+    """A figure in the report.
 
     Attributes
     ----------
     key, title : str
-        Its name in addresses, and for people.
+        Name in links, and title.
     of_paper : str
-        Where the paper has it.
+        The figure of the paper that it reproduces.
     caption : str
-        What one sees.
+        Text below the picture.
     png : bytes
-        A PNG file's content.
+        Content of a PNG file.
     """
 
     key: str
@@ -49,13 +49,13 @@ class Picture:
 
     @property
     def address(self) -> str:
-        """The picture itself, as an address."""
+        """The picture as a data URL."""
         return "data:image/png;base64," + base64.b64encode(self.png).decode("ascii")
 
 
 @dataclass(frozen=True, eq=False)
 class Report:
-    """All that the report shows.
+    """Everything that the report shows.
 
     Attributes
     ----------
@@ -64,9 +64,9 @@ class Report:
     tables : tuple of Table
         Tables of results, in the paper's order.
     findings : tuple of Finding
-        How the claims came out.
+        Claims with their verdicts.
     settings : tuple of Table
-        Readings and parameters.
+        Interpretation and parameters.
     scenarios : dict
         Plan, hash and map of each scenario.
     record : Record
@@ -82,13 +82,13 @@ class Report:
 
     @property
     def verdict_counts(self) -> dict[str, int]:
-        """How many claims came out which way."""
+        """Number of claims of each verdict."""
         counts = Counter(finding.verdict.value for finding in self.findings)
         return {verdict: counts[verdict] for verdict in _VERDICTS}
 
 
 def number(value: float) -> str:
-    """Write a number with about four digits."""
+    """Format a number with about four digits."""
     if value == int(value) and abs(value) < 1e6:
         return f"{int(value):,}".replace("-", "−")
     size = abs(value)
@@ -110,7 +110,7 @@ def render(report: Report) -> str:
 
 
 def save_report(report: Report, path: Path) -> None:
-    """Write the report, whole or not at all."""
+    """Write the report atomically."""
     with atomic_write(path) as beside:
         beside.write_text(render(report), encoding="utf-8")
 
@@ -138,7 +138,7 @@ def summary(report: Report) -> dict[str, Any]:
 
 
 def save_summary(report: Report, path: Path) -> None:
-    """Write :func:`summary` as JSON, whole or not at all."""
+    """Write :func:`summary` as JSON, atomically."""
     with atomic_write(path) as beside:
         text = json.dumps(summary(report), indent=2, ensure_ascii=False, allow_nan=False)
         beside.write_text(text + "\n", encoding="utf-8")

@@ -48,7 +48,7 @@ class Paper:
     tables : tuple of Table
         Its tables.
     findings : tuple of Finding
-        How the claims came out.
+        Claims with their verdicts.
     record : Record
         How the run was made.
     """
@@ -62,7 +62,7 @@ class Paper:
 
 @dataclass(frozen=True)
 class _Run:
-    """Settings that the stages share."""
+    """Settings shared by the stages."""
 
     out: Path
     plan: TrainingPlan

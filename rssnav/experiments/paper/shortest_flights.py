@@ -1,7 +1,7 @@
-"""Flights drawn at random from all shortest ones: what a trajectory is compared with.
+"""Random shortest flights: the reference for trajectories.
 
-On a grid very many flights are equally short, and any single one of them may happen to hug a
-wall. So the reference is their average, over flights drawn with equal probability.
+On a grid very many flights are equally short, and a single one may happen to follow a wall. The
+reference is therefore an average over shortest flights drawn with equal probability.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ _SEED = 0
 def shortest_flights(
     world: GridWorld, terminal: NDArray[np.bool_], count: int
 ) -> list[NDArray[np.int64]]:
-    """Draw flights from the start to a terminal state that are as short as possible in metres.
+    """Draw shortest flights in metres from the start to a terminal state.
 
     Parameters
     ----------
     world : GridWorld
-        Gives the possible steps and their lengths.
+        World with the possible steps and their lengths.
     terminal : (S,) bool
-        Where a flight may end.
+        States that a flight may end in.
     count : int
-        Flights to draw.
+        Number of flights to draw.
 
     Returns
     -------
@@ -43,11 +43,11 @@ def shortest_flights(
     distance_m = np.asarray(dijkstra(moves, indices=world.start_state))
     shortest = np.abs(distance_m[state] + length_m - distance_m[following]) < _SAME_M
     before = _lists(following[shortest], state[shortest], world.n_states)
-    ways = _count_ways(before, distance_m, world.start_state)
+    n_flights = _count_flights(before, distance_m, world.start_state)
     goals = np.flatnonzero(terminal)
     goals = goals[distance_m[goals] < distance_m[goals].min() + _SAME_M]
     rng = np.random.default_rng(_SEED)
-    return [_draw(rng, before, ways, goals, world.start_state) for _ in range(count)]
+    return [_draw(rng, before, n_flights, goals, world.start_state) for _ in range(count)]
 
 
 def _lists(
@@ -59,33 +59,35 @@ def _lists(
     return np.split(values[order], ends[:-1])
 
 
-def _count_ways(
+def _count_flights(
     before: list[NDArray[np.int64]], distance_m: NDArray[np.float64], start: int
 ) -> NDArray[np.float64]:
     """Number of shortest flights from the start to each state."""
-    ways = np.zeros(distance_m.size)
-    ways[start] = 1.0
+    n_flights = np.zeros(distance_m.size)
+    n_flights[start] = 1.0
     for state in np.argsort(distance_m, kind="stable"):
         if state != start and np.isfinite(distance_m[state]):
-            ways[state] = ways[before[state]].sum()
-    return ways
+            n_flights[state] = n_flights[before[state]].sum()
+    return n_flights
 
 
 def _draw(
     rng: np.random.Generator,
     before: list[NDArray[np.int64]],
-    ways: NDArray[np.float64],
+    n_flights: NDArray[np.float64],
     goals: NDArray[np.int64],
     start: int,
 ) -> NDArray[np.int64]:
-    """Draw one flight backwards, each step in proportion to the ways that lead there."""
-    states = [_pick(rng, goals, ways)]
+    """Draw one flight backwards, each state in proportion to the flights that lead there."""
+    states = [_pick(rng, goals, n_flights)]
     while states[-1] != start:
-        states.append(_pick(rng, before[states[-1]], ways))
+        states.append(_pick(rng, before[states[-1]], n_flights))
     return np.array(states[::-1], dtype=np.int64)
 
 
-def _pick(rng: np.random.Generator, states: NDArray[np.int64], ways: NDArray[np.float64]) -> int:
-    """Draw one of some states in proportion to the ways that lead there."""
-    up_to = np.cumsum(ways[states])
-    return int(states[np.searchsorted(up_to, rng.random() * up_to[-1], side="right")])
+def _pick(
+    rng: np.random.Generator, states: NDArray[np.int64], n_flights: NDArray[np.float64]
+) -> int:
+    """Draw a state in proportion to the number of shortest flights that lead there."""
+    cumulative = np.cumsum(n_flights[states])
+    return int(states[np.searchsorted(cumulative, rng.random() * cumulative[-1], side="right")])

@@ -1,4 +1,7 @@
-"""The paper's claims in words, each as a stated test over realisations."""
+"""The paper's claims, each as a statistical test over realisations.
+
+To add one, list it in the module of its subject; a new subject gets a module, listed here.
+"""
 
 from collections.abc import Sequence
 

@@ -14,7 +14,7 @@ from rssnav.experiments.statistics import Estimate, difference, ratio
 from rssnav.results import TrainingResult
 
 PerRun = Callable[[TrainingResult], NDArray[np.float64]]
-"""From a training to one value per realisation (of those that have one)."""
+"""From a training to one value per realisation that has one."""
 
 
 def agents_differ(
@@ -53,7 +53,7 @@ def falls_with_speed(data: PaperData, scenario: int, value: PerRun) -> Iterator[
 
 
 def place(scenario: int, speed: int) -> str:
-    """Name a scenario and a speed."""
+    """Return the text for a scenario and a speed."""
     return f"Scenario {scenario}, {speed} m/s"
 
 

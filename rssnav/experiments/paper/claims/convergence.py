@@ -1,4 +1,4 @@
-"""Claims about convergence. The paper's "time" is read in each of three ways."""
+"""Claims about convergence, in each of three interpretations of the paper's "time"."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def _falls(data: PaperData, measure: Measure) -> list[Case]:
 def _falls_with_speed(measure: Measure) -> Claim:
     return Claim(
         f"{measure.name.replace('_', '-')}-falls",
-        f"Convergence time falls with speed for both agents (read as {measure.title}).",
+        f"Convergence time falls with speed for both agents (measured as {measure.title}).",
         f"Mean {measure.title} to convergence, over the runs that converge. Reproduced where each "
-        "speed takes less than the one before.",
+        "speed takes less than the slower one.",
         f"{measure.heading}, slower minus faster",
         lambda data: _falls(data, measure),
     )
@@ -56,17 +56,17 @@ CLAIMS = (
     Claim(
         "all-converge",
         "Both algorithms converge.",
-        "Share of runs that fly the same path in three episodes on end. Reproduced where it is at "
-        f"least {100 * ENOUGH:g} % of the runs.",
-        "share of runs",
+        "Fraction of runs that fly the same path in three consecutive episodes. Reproduced where "
+        f"it is at least {100 * ENOUGH:g} % of the runs.",
+        "fraction of runs",
         lambda data: list(_all_converge(data)),
     ),
     *(_falls_with_speed(measure) for measure in MEASURES),
     Claim(
         "comparable-at-high-speed",
         "At high speed the RSS-based agent converges about as fast as the location-based one.",
-        "Ratio of the mean times to convergence at the highest speed, in each reading of time. "
-        f"Reproduced where it lies within a factor {COMPARABLE:g}.",
+        "Ratio of the mean times to convergence at the highest speed, in each interpretation of "
+        f"time. Reproduced where it lies within a factor {COMPARABLE:g}.",
         "ratio of times, RSS-based over location-based",
         _comparable,
     ),

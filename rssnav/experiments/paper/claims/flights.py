@@ -19,14 +19,14 @@ from rssnav.world import GridWorld
 SHOWN_SPEED = 1
 """Speed of the paper's trajectory figure [m/s]."""
 
-WEAK_SHARE = 0.25
-"""A cell is weak when its RSS is among this lowest share of the reachable cells."""
+WEAK_FRACTION = 0.25
+"""A cell is weak when its RSS is in this lowest fraction of the reachable cells."""
 
 FLIGHTS_DRAWN = 500
-"""Shortest flights that trajectories are compared with."""
+"""Number of shortest flights that trajectories are compared with."""
 
 Flights = Sequence[NDArray[np.integer]]
-"""States (n + 1,) of each of some flights."""
+"""Flights, each as its states (n + 1,)."""
 
 _CLOSE = max(
     max(ratio, 1.0 / ratio)
@@ -34,18 +34,18 @@ _CLOSE = max(
     if key.agent == "rss"
     for ratio in [rss_m / PATH_LENGTH_M[type(key)(key.scenario, "location", key.speed)]]
 )
-"""The widest ratio of lengths in the paper's own table, which it calls very close."""
+"""Largest ratio of lengths in the paper's table; the paper calls them very close."""
 
 
-def mean_rss_dbm(world: GridWorld, some_flights: Flights) -> NDArray[np.float64]:
+def mean_rss_dbm(world: GridWorld, several: Flights) -> NDArray[np.float64]:
     """Mean RSS [dBm] over the cells of each flight (n,)."""
-    return np.array([world.rss_dbm[flight].mean() for flight in some_flights])
+    return np.array([world.rss_dbm[flight].mean() for flight in several])
 
 
-def strong_share(world: GridWorld, some_flights: Flights) -> NDArray[np.float64]:
-    """Share of each flight's cells that are not weak [%], (n,)."""
-    strong = world.rss_dbm > np.quantile(world.rss_dbm, WEAK_SHARE)
-    return np.array([100.0 * strong[flight].mean() for flight in some_flights])
+def strong_percentage(world: GridWorld, several: Flights) -> NDArray[np.float64]:
+    """Percentage of each flight's cells that are not weak (n,)."""
+    strong = world.rss_dbm > np.quantile(world.rss_dbm, WEAK_FRACTION)
+    return np.array([100.0 * strong[flight].mean() for flight in several])
 
 
 def turns(world: GridWorld, flight: NDArray[np.integer]) -> float:
@@ -68,7 +68,7 @@ def _steps(result: TrainingResult) -> NDArray[np.float64]:
 
 _RSS_STATISTICS: dict[str, Callable[[GridWorld, Flights], NDArray[np.float64]]] = {
     "mean RSS [dBm]": mean_rss_dbm,
-    f"cells above the weakest {100 * WEAK_SHARE:g} % [%]": strong_share,
+    f"cells above the weakest {100 * WEAK_FRACTION:g} % [%]": strong_percentage,
 }
 
 
@@ -88,7 +88,7 @@ def _avoids_low_rss(data: PaperData) -> Iterator[Case]:
 
 
 def _everywhere(test: Callable[[PaperData, int, int], Case]) -> Callable[[PaperData], list[Case]]:
-    """Return the cases of a test in every scenario at every speed."""
+    """Apply a test to every scenario and speed."""
     return lambda data: [
         test(data, scenario, speed) for scenario in data.scenarios for speed in data.speeds
     ]
@@ -111,8 +111,8 @@ CLAIMS = (
         "avoids-low-rss",
         "The RSS-based agent's trajectories tend to keep away from regions of low RSS.",
         f"Final flights at {SHOWN_SPEED} m/s against the average of {FLIGHTS_DRAWN} flights drawn "
-        "at random from all shortest ones: mean RSS over the cells, and share of cells that are "
-        f"not among the weakest {100 * WEAK_SHARE:g} % of the building. Reproduced where the "
+        "at random from all shortest ones: mean RSS over the cells, and percentage of cells "
+        f"not among the weakest {100 * WEAK_FRACTION:g} % of the building. Reproduced where the "
         "RSS-based flights' is higher.",
         "RSS-based minus shortest flights",
         lambda data: list(_avoids_low_rss(data)),
@@ -135,7 +135,7 @@ CLAIMS = (
         "lengths-close",
         "The RSS-based agent comes very close to the location-based one in its final trajectory.",
         f"Ratio of the mean lengths. Reproduced where it lies within a factor {_CLOSE:.3f}, the "
-        "largest in the paper's own table.",
+        "largest in the paper's table.",
         "ratio of lengths, RSS-based over location-based",
         _everywhere(lambda d, s, v: agents_alike(d, s, v, _lengths, between(1.0 / _CLOSE, _CLOSE))),
     ),

@@ -1,4 +1,4 @@
-"""Claims about how steps and visits develop during training (the paper shows Scenario 1)."""
+"""Claims about steps and visits during training (the paper shows Scenario 1)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ EARLY_EPISODES = VISIT_EPISODES[0]
 WINDOW = 100
 NEAR_START_M = 10.0
 GOOD_FACTOR = 1.1
-GOOD_SHARE = 0.9
+GOOD_FRACTION = 0.9
 
 
 def mean_steps(first: int, last: int) -> PerRun:
@@ -35,7 +35,7 @@ def mean_steps(first: int, last: int) -> PerRun:
 
 
 def fluctuation(result: TrainingResult) -> NDArray[np.float64]:
-    """Mean change of the number of steps from an episode to the next, up or down, per run."""
+    """Mean absolute change of the number of steps from one episode to the next, per run."""
     steps = result.steps[:, :SHOWN_EPISODES].astype(np.float64)
     return np.abs(np.diff(steps, axis=1)).mean(axis=1)
 
@@ -86,7 +86,7 @@ def _good_policies(data: PaperData) -> Iterator[Case]:
             (f"steps flown in the last {WINDOW} episodes", float(flown.mean())),
             ("fewest steps possible", float(fewest)),
         )
-        decide = between(GOOD_SHARE, 1.0)
+        decide = between(GOOD_FRACTION, 1.0)
         yield case(_name(agent, SHOWN_SPEED), compared, mean(good), decide)
 
 
@@ -123,26 +123,26 @@ CLAIMS = (
     ),
     Claim(
         "steps-fall-with-speed",
-        "The number of steps falls with speed, as there are fewer states to go to.",
+        "The number of steps falls with speed, as there are fewer states to visit.",
         f"Mean steps of the first {SHOWN_EPISODES} episodes. Reproduced where each speed takes "
-        "fewer than the one before.",
+        "fewer than the slower one.",
         "steps, slower minus faster",
         lambda data: list(falls_with_speed(data, SCENARIO, mean_steps(0, SHOWN_EPISODES))),
     ),
     Claim(
         "good-by-1000",
         f"Both agents learn good policies within the first {SHOWN_EPISODES} episodes.",
-        f"The greedy flight of each run as it is after {SHOWN_EPISODES} episodes counts as good if "
+        f"The greedy flight of each run after {SHOWN_EPISODES} episodes counts as good if "
         f"it arrives in at most {GOOD_FACTOR:g} times the fewest steps possible. Reproduced where "
-        f"at least {100 * GOOD_SHARE:g} % of the runs are good.",
-        "share of good runs",
+        f"at least {100 * GOOD_FRACTION:g} % of the runs are good.",
+        "fraction of good runs",
         lambda data: list(_good_policies(data)),
     ),
     Claim(
         "rss-fluctuates-less",
         "The RSS-based agent's learning curves fluctuate less.",
-        f"Mean change of the steps from an episode to the next over the first {SHOWN_EPISODES} "
-        "episodes. Reproduced where the location-based agent's is larger.",
+        "Mean absolute change of the steps from one episode to the next over the first "
+        f"{SHOWN_EPISODES} episodes. Reproduced where the location-based agent's is larger.",
         "steps, location-based minus RSS-based",
         _per_speed(fluctuation, "location"),
     ),

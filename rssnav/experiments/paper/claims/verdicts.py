@@ -1,4 +1,4 @@
-"""What a claim is, and how a test decides on it.
+"""Claims, and how a test decides on them.
 
 A claim is tested in several cases (scenarios, speeds, agents). In each, a statistic and its 95 %
 interval over realisations are measured, and
@@ -8,9 +8,9 @@ interval over realisations are measured, and
 * *inconclusive* otherwise.
 
 The claim as a whole is reproduced when all its cases are, not reproduced when at least one case
-is not, and inconclusive otherwise. The cases are shown beside it, so that a claim that fails in
-one of twelve is told apart from one that fails in all. Intervals are not widened for the number
-of cases.
+is not, and inconclusive otherwise. Its cases are reported too, so that a claim that fails in one of
+twelve can be distinguished from one that fails in all. Intervals are not corrected for multiple
+testing.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from rssnav.experiments.statistics import Estimate
 
 
 class Verdict(StrEnum):
-    """How a test came out."""
+    """Result of a test."""
 
     REPRODUCED = "reproduced"
     NOT_REPRODUCED = "not reproduced"
@@ -42,7 +42,7 @@ class Case:
     compared : tuple of (str, float)
         The quantities that the statistic compares.
     estimate : Estimate or None
-        The statistic with its interval; None when no run gives one.
+        The statistic with its interval; None if no run has a value.
     verdict : Verdict
     """
 
@@ -61,9 +61,9 @@ class Claim:
     key : str
         Short name.
     paper : str
-        What the paper says, in other words.
+        The paper's statement, paraphrased.
     test : str
-        What is measured and when it counts as reproduced.
+        What is measured, and when the claim counts as reproduced.
     statistic : str
         Name of the statistic, with its unit.
     cases : callable
@@ -79,7 +79,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Finding:
-    """A claim as it came out.
+    """A claim and the results of its cases.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ class Finding:
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict on the claim as a whole."""
+        """Verdict on the whole claim."""
         verdicts = {case.verdict for case in self.cases}
         if Verdict.NOT_REPRODUCED in verdicts:
             return Verdict.NOT_REPRODUCED
@@ -136,5 +136,5 @@ def case(
 
 
 def undecided(name: str) -> Case:
-    """Return a case in which no run gives the statistic."""
+    """Return a case without a statistic, because no run has a value."""
     return Case(name, (), None, Verdict.INCONCLUSIVE)

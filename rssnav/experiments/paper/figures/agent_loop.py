@@ -1,4 +1,4 @@
-"""Figure: how the RSS-based agent and its environment act on each other."""
+"""Figure: interaction of the RSS-based agent and its environment."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SENSED = (
     (0.12, "state", r"$s_{t+1} \leftarrow \mathrm{RSS}_{t+1}$"),
     (-0.12, "reward", r"$r_{t+1} = \mathrm{RSS}_{t+1} - \mathrm{RSS}_t$"),
 )
-"""Arrows back to the agent: height above the boxes' middle [inch], name, and what it is."""
+"""Arrows back to the agent: height above the boxes' middle [inch], name, meaning."""
 
 Point = tuple[float, float]
 
@@ -77,7 +77,7 @@ def _box(ax: Axes, foot: float, colour: str, name: str, inside: str) -> None:
 
 
 def _arrow(ax: Axes, corners: list[Point], colour: str) -> None:
-    """Draw an arrow along straight pieces."""
+    """Draw an arrow along a polyline."""
     arrow = FancyArrowPatch(
         path=Path(corners),
         arrowstyle="-|>,head_length=4,head_width=2",
@@ -89,7 +89,7 @@ def _arrow(ax: Axes, corners: list[Point], colour: str) -> None:
 
 
 def caption(_data: PaperData) -> str:
-    """Say what the figure shows."""
+    """Return the caption."""
     return (
         "The RSS-based agent senses only the RSS: its value names the state, its change since the "
         "last position is the reward, and more than −21 dBm means that the source is found. The "

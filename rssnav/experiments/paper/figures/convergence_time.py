@@ -46,7 +46,7 @@ def _draw_measure(ax: Axes, data: PaperData, measure: Measure) -> None:
 def _draw_curve(
     ax: Axes, data: PaperData, measure: Measure, scenario: int, agent: AgentName
 ) -> None:
-    """Draw means with their 95 % bootstrap intervals; speeds without convergence are left out."""
+    """Draw means with their 95 % bootstrap intervals; omit speeds without convergence."""
     times = {speed: measure.of(data.result(scenario, agent, speed)) for speed in data.speeds}
     estimates = {speed: mean(values) for speed, values in times.items() if values.size}
     line, marker, filled = _LINES[scenario]
@@ -71,13 +71,13 @@ def _draw_curve(
 
 
 def caption(data: PaperData) -> str:
-    """Say what the figure shows."""
+    """Return the caption."""
     return (
-        "Time until a run flies the same path in three episodes on end: mean over the "
+        "Time until a run flies the same path in three consecutive episodes: mean over the "
         f"{data.n_runs} realisations with its 95 % bootstrap interval (mostly smaller than the "
-        "mark). The paper does not say which time it means, so all three are shown: (a) episodes, "
-        "(b) simulated flight time at one second a step, (c) CPU time of the learning loop. Time "
-        "in the air falls with speed; the number of episodes need not, because exploration decays "
+        "marker). The paper does not specify the time, so all three are shown: (a) episodes, "
+        "(b) simulated flight time at one second per step, (c) CPU time of the learning loop. "
+        "Flight time falls with speed; the number of episodes need not, because exploration decays "
         "per step and a faster flight takes fewer steps per episode."
     )
 

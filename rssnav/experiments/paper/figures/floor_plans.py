@@ -1,4 +1,4 @@
-"""Figure: the two floor plans in three dimensions."""
+"""Figure: the two floor plans in 3D."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def draw(data: PaperData) -> Figure:
 
 
 def _share_legend(figure: Figure) -> None:
-    """Put one legend below in place of those of the panels."""
+    """Replace the panels' legends by one below them."""
     handles = {}
     for ax in figure.axes:
         legend = ax.get_legend()
@@ -45,16 +45,16 @@ def _share_legend(figure: Figure) -> None:
 
 
 def caption(data: PaperData) -> str:
-    """Say what the figure shows."""
+    """Return the caption."""
     sizes = " and ".join(
         f"{x1 - x0:g} m × {y1 - y0:g} m"
         for x0, y0, x1, y1 in (scenario.plan.bounds for scenario in data.scenarios.values())
     )
     height_m = max(scenario.plan.height_m for scenario in data.scenarios.values())
     return (
-        f"The two buildings, {sizes}, with walls {height_m:g} m high; the ceiling is left out. "
+        f"The two buildings, {sizes}, with walls {height_m:g} m high; the ceiling is omitted. "
         "The paper gives their sizes, the source and the start, but not their walls: these plans "
-        "are reconstructions under the constraints it states."
+        "are reconstructed under the constraints it states."
     )
 
 

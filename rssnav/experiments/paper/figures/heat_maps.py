@@ -25,14 +25,14 @@ from rssnav.pictures.style import (
     styled,
 )
 
-_FAINTEST_SHARE = 0.01
+_WEAKEST_FRACTION = 0.01
 _LEFT_IN, _GAP_IN, _RIGHT_IN, _TOP_IN, _FOOT_IN = 0.42, 0.45, 0.1, 0.22, 0.38
 _BAR_IN, _BELOW_MAP_IN, _LEGEND_IN = 0.11, 0.62, 0.55
 
 
 @styled
 def draw(data: PaperData) -> Figure:
-    """Draw the maps to one scale of length and colour; the scale lies below the first map."""
+    """Draw the maps on one scale of length and colour; the colour bar is below the first map."""
     bounds = [scenario.plan.bounds for scenario in data.scenarios.values()]
     gaps_in = _LEFT_IN + _RIGHT_IN + _GAP_IN * (len(bounds) - 1)
     scale = (PAGE_IN - gaps_in) / sum(x1 - x0 for x0, _, x1, _ in bounds)  # inch per metre
@@ -82,8 +82,8 @@ def _draw_keys(figure: Figure, ax: Axes, norm: Normalize) -> None:
 def draw_map(ax: Axes, scenario: Scenario, norm: Normalize) -> AxesImage:
     """Draw one map with walls, source and start."""
     radio_map, plan = scenario.radio_map, scenario.plan
-    reached = np.ma.masked_invalid(radio_map.rss_dbm)
-    image = draw_cells(ax, radio_map.grid, reached, norm=norm)
+    covered = np.ma.masked_invalid(radio_map.rss_dbm)
+    image = draw_cells(ax, radio_map.grid, covered, norm=norm)
     draw_solid_walls(ax, plan, radio_map.grid.height_m)
     draw_source(ax, plan)
     draw_start(ax, plan)
@@ -91,15 +91,15 @@ def draw_map(ax: Axes, scenario: Scenario, norm: Normalize) -> AxesImage:
 
 
 def colour_scale(data: PaperData) -> Normalize:
-    """Return the scale [dBm] all maps share; the faintest cells lie below it."""
+    """Return the scale [dBm] of all maps; the weakest cells lie below it."""
     values = np.concatenate([s.radio_map.rss_dbm.ravel() for s in data.scenarios.values()])
     finite = values[np.isfinite(values)]
-    faintest = float(np.quantile(finite, _FAINTEST_SHARE))
-    return Normalize(10.0 * math.floor(faintest / 10.0), 10.0 * math.ceil(finite.max() / 10.0))
+    weakest = float(np.quantile(finite, _WEAKEST_FRACTION))
+    return Normalize(10.0 * math.floor(weakest / 10.0), 10.0 * math.ceil(finite.max() / 10.0))
 
 
 def caption(data: PaperData) -> str:
-    """Say what the figure shows."""
+    """Return the caption."""
     ranges = "; ".join(
         f"Scenario {number}: {_dbm(s.radio_map.rss_dbm[np.isfinite(s.radio_map.rss_dbm)].min())} "
         f"to {_dbm(s.radio_map.rss_dbm.max())} dBm in {s.radio_map.rss_dbm.size:,} cells"
@@ -109,7 +109,8 @@ def caption(data: PaperData) -> str:
     return (
         f"Received signal strength {grid.height_m:g} m above the floor, the sum of the powers of "
         f"all paths in each {grid.cell_size_m:g} m cell ({ranges}). Black lines are walls at that "
-        "height; hallways in line with the source guide the signal, and rooms off them are dark."
+        "height; hallways in line with the source guide the signal, and the RSS in rooms "
+        "off them is low."
     )
 
 

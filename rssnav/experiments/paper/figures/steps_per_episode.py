@@ -52,17 +52,17 @@ def _draw_agent(ax: Axes, data: PaperData, agent: AgentName) -> None:
 
 
 def shown_steps(data: PaperData, agent: AgentName, speed: int) -> NDArray[np.int32]:
-    """Steps (R, E) of the episodes that the figure shows, which every run has flown."""
+    """Steps (R, E) of the episodes that the figure shows."""
     return data.result(SCENARIO, agent, speed).steps[:, :SHOWN_EPISODES]
 
 
 def caption(data: PaperData) -> str:
-    """Say what the figure shows."""
+    """Return the caption."""
     low, high = (f"{100 * share:g}" for share in BAND)
     return (
         f"Steps of each episode in Scenario {SCENARIO}: mean over {data.n_runs} realisations, not "
-        f"smoothed, and the band from the {low} % to the {high} % quantile. The paper shows the "
-        "means alone."
+        f"smoothed, and the band from the {low} % to the {high} % quantile. The paper shows only "
+        "the means."
     )
 
 

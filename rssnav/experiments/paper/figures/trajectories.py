@@ -73,7 +73,7 @@ def _draw_median_flight(ax: Axes, data: PaperData, scenario: int, agent: AgentNa
 
 
 def _legend(figure: Figure, panels: Sequence[Axes]) -> None:
-    """Draw one legend of all that the panels show."""
+    """Draw one legend for all panels."""
     labelled: dict[str, Artist] = {}
     for ax in panels:
         handles, labels = ax.get_legend_handles_labels()
@@ -82,7 +82,7 @@ def _legend(figure: Figure, panels: Sequence[Axes]) -> None:
 
 
 def caption(data: PaperData) -> str:
-    """Say what the figure shows."""
+    """Return the caption."""
     lengths = "; ".join(
         f"{AGENT_LABELS[agent]} {result.path_length_m[median]:.1f} m in "
         f"{result.path_steps[median]} steps (Scenario {number})"

@@ -56,24 +56,24 @@ def draw(data: PaperData) -> Figure:
 
 
 def caption(data: PaperData) -> str:
-    """Say what the figure shows."""
+    """Return the caption."""
     totals = "; ".join(
         f"{AGENT_LABELS[agent]} {result.visits[0].sum():,.0f}"
         for agent in _ORDER
         for result in [data.result(SCENARIO, agent, SPEED)]
     )
     return (
-        f"Visits of each cell from the first episode on, Scenario {SCENARIO}, {SPEED} m/s, mean "
-        f"over {data.n_runs} realisations, on one logarithmic scale; grey cells were never "
+        f"Visits of each cell, counted from the first episode, Scenario {SCENARIO}, {SPEED} m/s, "
+        f"mean over {data.n_runs} realisations, on one logarithmic scale; grey cells were never "
         "visited. "
         f"In the first {result_episodes(data)[0]} episodes: {totals} visits in all. The RSS-based "
-        "agent keeps to cells that lie in the light of the hallway; the location-based agent first "
-        "searches the rooms too."
+        "agent stays in cells that the source covers through the hallway; the location-based agent "
+        "first searches the rooms too."
     )
 
 
 def result_episodes(data: PaperData) -> tuple[int, ...]:
-    """Episodes after which visits were kept."""
+    """Episodes after which the visits were stored."""
     return data.result(SCENARIO, _ORDER[0], SPEED).schedule.snapshot_episodes
 
 

@@ -1,4 +1,4 @@
-"""The columns that say which configuration a row is about."""
+"""The columns that identify the configuration of a row."""
 
 from __future__ import annotations
 

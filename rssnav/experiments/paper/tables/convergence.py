@@ -1,4 +1,4 @@
-"""Table: how many realisations converge, and how long it takes them."""
+"""Table: realisations that converge, and their time to convergence."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def table(data: PaperData) -> Table:
     return Table(
         "convergence",
         "Convergence and truncated episodes",
-        "A run has converged when it flies the same path in three episodes on end. Means over "
+        "A run has converged when it flies the same path in three consecutive episodes. Means over "
         "the runs that converged; their 95 % bootstrap intervals are in the figure above and in "
         "convergence.csv. An episode is "
         f"truncated after {limit:,} steps; it does not count as an arrival.",

@@ -19,8 +19,8 @@ def table(data: PaperData) -> Table:
     return Table(
         "optimum",
         "Learned flights against the optimum",
-        "Value iteration solves the decision process that each agent learns in; its greedy flight "
-        "is what Q-learning would converge to. The return is the discounted sum of rewards from "
+        "Value iteration solves each agent's decision process; Q-learning would converge to its "
+        "greedy flight. The return is the discounted sum of rewards from "
         "the start, mean over the flights that arrive.",
         (
             *CONFIGURATION_COLUMNS,
@@ -30,7 +30,7 @@ def table(data: PaperData) -> Table:
             Column("optimal_steps", "Optimal [steps]"),
             Column("mean_return", "Learned return", 2),
             Column("optimal_return", "Optimal return", 2),
-            Column("return_share", "Share of the optimum", 4),
+            Column("return_share", "Fraction of the optimum", 4),
         ),
         tuple(_row(key, result) for key, result in data.results.items()),
     )

@@ -1,4 +1,4 @@
-"""Table: lengths and steps of the final flights, beside the paper's and the best possible."""
+"""Table: lengths and steps of the final flights, beside the paper's and the shortest possible."""
 
 from __future__ import annotations
 
@@ -19,10 +19,9 @@ def table(data: PaperData) -> Table:
     return Table(
         "path_lengths",
         "Length of the final trajectories (the paper's Table IV)",
-        "Greedy flights after training, over the realisations whose flight arrives; one that runs "
-        "in circles is left out and counted. Shortest and fewest possible: Dijkstra over the "
-        "possible steps. Agents pay per step, straight or diagonal alike, so they learn few steps "
-        "rather than few metres.",
+        "Greedy flights after training, over the realisations whose flight arrives; the others "
+        "end in a cycle. Shortest and fewest possible: Dijkstra over the possible steps. Straight "
+        "and diagonal steps cost the agents the same, so they minimise steps rather than metres.",
         (
             *CONFIGURATION_COLUMNS,
             Column("arrived", "Flights that arrive"),

@@ -1,4 +1,4 @@
-"""The methods that are compared, and their flights in one world.
+"""The methods that are compared, and their flights in a world.
 
 The step budget of SARSA and Double Q-learning is the largest number of steps that any realisation
 of Q-learning flew until it converged. Searchers do not learn: each flies once, up to the step limit

@@ -1,4 +1,4 @@
-"""Figure of the noise study: success, effort and number of states against Th and sigma."""
+"""Figure of the noise study: success, steps, convergence and states against width and sigma."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def draw(outcomes: Sequence[Outcome]) -> Figure:
 
 
 def _scale(ax: Axes, outcomes: Sequence[Outcome]) -> None:
-    """Mark the widths that were measured on a logarithmic axis."""
+    """Set a logarithmic axis with a tick at each measured width."""
     widths = sorted({outcome.setting.width_db for outcome in outcomes})
     ax.set_xscale("log", base=2)
     ax.set_xticks(widths, [f"{width:g}" for width in widths])
@@ -92,7 +92,7 @@ def _draw_curves(ax: Axes, outcomes: Sequence[Outcome], measure: Measure) -> Non
 
 
 def _legend() -> list[Line2D]:
-    """Explain colours and lines."""
+    """Legend entries of colours and lines."""
     colours = [
         Line2D([], [], color=colour, marker="o", markersize=2.5, label=f"σ = {sigma_db:g} dB")
         for sigma_db, colour in zip(SIGMAS_DB, _COLOURS, strict=True)

@@ -1,8 +1,7 @@
-"""What each choice that the paper leaves open does to the result.
+"""Sensitivity of the results to each choice that the paper does not specify.
 
 Every alternative changes one parameter of our interpretation and trains all twelve configurations
-with it. A run that converges neither within 20 000 episodes nor within 25 million steps is given
-up.
+with it. A run stops without convergence after 20 000 episodes or 25 million steps.
 """
 
 from __future__ import annotations

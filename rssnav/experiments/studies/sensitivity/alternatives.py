@@ -17,7 +17,7 @@ from rssnav.training import train
 from rssnav.world import GridWorld, WorldError
 
 STEP_LIMIT = 25_000_000
-"""Steps after which a run is given up; our interpretation converges within 10 million."""
+"""Steps after which a run stops; our interpretation converges within 10 million."""
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,8 @@ ALTERNATIVES: tuple[Alternative, ...] = (
     *(Alternative("initial Q", f"{q:g}", QLearning(initial_q=q)) for q in (0.0, 20.0, 50.0)),
     *(Alternative("initial Q", f"{q:g}", QLearning(initial_q=q)) for q in (200.0, 500.0)),
     Alternative("maximum over", "all actions", QLearning(maximum_over="all")),
-    Alternative("episode cap", "2 000 steps", QLearning(max_steps=2_000)),
-    Alternative("episode cap", "200 000 steps", QLearning(max_steps=200_000)),
+    Alternative("step limit", "2 000 steps", QLearning(max_steps=2_000)),
+    Alternative("step limit", "200 000 steps", QLearning(max_steps=200_000)),
     Alternative("map", "coherent sum", coherent=True),
     Alternative("decay", "per episode, η 1e-5", QLearning(decay="episode")),
     Alternative("decay", "per episode, η 1e-3", QLearning(decay="episode", eta=1e-3)),
@@ -100,11 +100,11 @@ class Outcome:
     runs : int
         Realisations.
     episodes, steps : (C,) float64
-        Flown at convergence, of the C runs that converged.
+        Episodes and steps until convergence, of the C runs that converged.
     length_m, path_steps : (A,) float64
         Length [m] and steps of the A final flights that reach the source.
     obstacle : str
-        Why nothing could be trained; empty where it could.
+        Why it could not be trained; empty if it could.
     """
 
     alternative: Alternative
@@ -157,7 +157,7 @@ def _world(trial: Trial, conditions: Conditions) -> GridWorld:
 
 
 def _greedy(alternative: Alternative, key: Configuration, result: TrainingResult) -> Outcome:
-    """Outcome by the greedy flights after training."""
+    """Outcome from the greedy flights after training."""
     converged = result.converged_episode >= 0
     return Outcome(
         alternative,
@@ -171,7 +171,7 @@ def _greedy(alternative: Alternative, key: Configuration, result: TrainingResult
 
 
 def _flown(outcome: Outcome, result: TrainingResult) -> Outcome:
-    """Outcome by the flights of the episodes in which the runs converged."""
+    """Outcome from the flights of the episodes in which the runs converged."""
     runs = np.flatnonzero(result.converged_episode >= 0)
     last = result.converged_episode[runs] - 1
     return dataclasses.replace(

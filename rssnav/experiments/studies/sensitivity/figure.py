@@ -50,7 +50,7 @@ def draw(outcomes: Sequence[Outcome]) -> Figure:
 
 
 def _draw_outcome(panel: _Panel, outcome: Outcome) -> None:
-    """Draw mean and standard deviation; hollow where not every run converged."""
+    """Draw mean and standard deviation; hollow if not every run converged."""
     marker, colour = _MARKERS[outcome.key.speed]
     if outcome.alternative == OURS:
         panel.ax.axvline(
@@ -75,7 +75,7 @@ def _draw_outcome(panel: _Panel, outcome: Outcome) -> None:
 
 
 def _legend() -> list[Line2D]:
-    """Explain markers, filling and dotted lines."""
+    """Legend entries of markers, filling and dotted lines."""
     speeds = [
         Line2D([], [], marker=marker, color=colour, linestyle="none", label=f"{speed} m/s")
         for speed, (marker, colour) in _MARKERS.items()

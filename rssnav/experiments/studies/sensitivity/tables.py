@@ -1,4 +1,4 @@
-"""Tables of the sensitivity study: every outcome, and a line per alternative."""
+"""Tables of the sensitivity study: all outcomes, and a row per alternative."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def outcome_table(outcomes: Sequence[Outcome]) -> Table:
     ours = {outcome.key: outcome for outcome in outcomes if outcome.alternative == OURS}
     return Table(
         "sensitivity",
-        "What the paper leaves open, choice by choice",
+        "Choices that the paper does not specify, one by one",
         "Each row changes one parameter of our interpretation. Episodes and flown steps to "
         "convergence: means over the runs that converge. Lengths: means over the final flights "
         "that arrive; their difference from our interpretation with its 95 % bootstrap interval.",
@@ -58,7 +58,7 @@ def summary_table(outcomes: Sequence[Outcome]) -> Table:
     alternatives = dict.fromkeys(outcome.alternative for outcome in outcomes)
     return Table(
         "sensitivity_summary",
-        "What the paper leaves open, in short",
+        "Choices that the paper does not specify, in short",
         "Converge and arrive: runs of all configurations. Ratios to our interpretation: means over "
         "the configurations in which every run converges, or for lengths in which every final "
         "flight arrives, and the extremes. Agree: configurations in which every final flight "
@@ -131,7 +131,7 @@ def _summary(
 
 
 def _agrees(outcome: Outcome) -> bool:
-    """Whether the mean length is the paper's, as nearly as one may ask of another plan."""
+    """Whether the mean length agrees with the paper's within :data:`TOLERANCE`."""
     paper_m = PATH_LENGTH_M[outcome.key]
     return abs(float(outcome.length_m.mean()) - paper_m) <= TOLERANCE * paper_m
 

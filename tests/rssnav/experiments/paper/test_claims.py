@@ -7,7 +7,7 @@ import pytest
 from small_paper import small_data
 
 from rssnav.experiments.paper.claims import CLAIMS, Finding, Verdict, claims_table, examine
-from rssnav.experiments.paper.claims.flights import mean_rss_dbm, strong_share, turns
+from rssnav.experiments.paper.claims.flights import mean_rss_dbm, strong_percentage, turns
 from rssnav.experiments.paper.claims.learning import fluctuation
 from rssnav.experiments.paper.claims.verdicts import between, case, positive
 from rssnav.experiments.paper.data import AGENTS, Configuration, flights, terminal_states
@@ -236,7 +236,7 @@ def test_statistics_of_flights():
     assert mean_rss_dbm(world, [flight])[0] == pytest.approx(world.rss_dbm[:3].mean())
     weakest = np.argsort(world.rss_dbm)[:1]
     strongest = np.argsort(world.rss_dbm)[-1:]
-    assert strong_share(world, [weakest, strongest]).tolist() == [0.0, 100.0]
+    assert strong_percentage(world, [weakest, strongest]).tolist() == [0.0, 100.0]
 
 
 def test_fluctuation_is_the_mean_change_between_episodes():
