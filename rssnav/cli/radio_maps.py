@@ -35,8 +35,6 @@ from rssnav.cli.options import (
 from rssnav.kernel_cache import tracer_cache
 from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM, make_map
 
-SCENARIOS = ("scenario1", "scenario2")
-
 
 def add_to(parent: typer.Typer) -> None:
     """Add the commands ``map`` and ``maps``."""
@@ -127,8 +125,10 @@ def map_scenarios(
 
     Only what has changed is recomputed.
     """
+    from rssnav.experiments.paper.scenarios import PLANS
+
     with stage_progress(compiles=not tracer_cache().n_compiled) as show:
-        for name in SCENARIOS:
+        for name in PLANS:
             plan, file, picture = floorplans.load(name), out / f"{name}.h5", out / f"{name}.png"
 
             def progress(done: int, total: int, stage: str = name) -> None:
@@ -139,7 +139,7 @@ def map_scenarios(
             )
             if style is not None or _is_older(picture, file):
                 _draw(plan, radio_map, picture, style)
-    for name in SCENARIOS:
+    for name in PLANS:
         print(out / f"{name}.h5")
         print(out / f"{name}.png")
 
