@@ -125,7 +125,7 @@ def _print(facts: dict[str, Any], caches: dict[str, KernelCache]) -> None:
             ("materials", facts["material_edition"]),
             ("threads", facts["threads"]),
             *((f"{name} kernels", _state(cache)) for name, cache in caches.items()),
-            ("self test", f"{'failed' if facts['faults'] else 'passed'}, "
+            ("self-test", f"{'failed' if facts['faults'] else 'passed'}, "
                           f"{facts['self_test_s']:.1f} s"),
         ]
     )  # fmt: skip

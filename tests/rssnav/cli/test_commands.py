@@ -14,7 +14,7 @@ import trimesh
 from cli_plans import ESCAPE, QUICK, done, edited, room_file, run
 
 import floorplans
-import rssnav.experiments
+import rssnav.experiments.paper
 from raytrace import RadioMap, TraceConfig
 from rssnav import TrainingResult
 from rssnav.cli.plan_sketch import sketch
@@ -245,7 +245,7 @@ def test_doctor_finds_nothing_wrong() -> None:
     facts = json.loads(done("doctor", "--json"))
     assert facts["faults"] == []
     assert facts["threads"] >= 1
-    assert "self test         passed" in done("doctor")
+    assert "self-test         passed" in done("doctor")
 
 
 def test_doctor_ends_with_1_when_the_tracer_is_wrong(monkeypatch) -> None:
@@ -253,12 +253,12 @@ def test_doctor_ends_with_1_when_the_tracer_is_wrong(monkeypatch) -> None:
     result = run("doctor")
     assert result.exit_code == 1
     assert "expected 1 + 6 images" in result.stderr
-    assert "self test         failed" in result.stdout
+    assert "self-test         failed" in result.stdout
 
 
 @dataclass
 class PaperRun:
-    """A stand-in for a run of the paper, which remembers how it was asked for."""
+    """A stand-in for a run of the paper that stores its options."""
 
     out: Path | None = None
     options: dict | None = None
@@ -274,7 +274,7 @@ class PaperRun:
 
 def test_experiments_passes_its_options_on(monkeypatch, tmp_path) -> None:
     paper = PaperRun()
-    monkeypatch.setattr(rssnav.experiments, "run_paper", paper)
+    monkeypatch.setattr(rssnav.experiments.paper, "run_paper", paper)
     result = run(
         "experiments", "--quick", "--out", tmp_path, "--runs", 3, "--seed", 5, "--no-resume"
     )
@@ -288,19 +288,19 @@ def test_experiments_passes_its_options_on(monkeypatch, tmp_path) -> None:
 
 
 def test_a_study_is_run_and_its_files_are_named(monkeypatch, tmp_path) -> None:
-    from rssnav.experiments.studies import common as studies
-    from rssnav.experiments.studies import noise
+    from rssnav.experiments import studies
 
     asked = {}
 
-    def study(out, **options):
-        asked.update(out=out, **options)
-        return studies.Study((), (tmp_path / "tables" / "noise.csv",))
+    def run_study(study, out, **options):
+        asked.update(study=study, out=out, **options)
+        return studies.StudyResult((), (tmp_path / "tables" / "noise.csv",))
 
-    monkeypatch.setattr(noise, "run", study)
+    monkeypatch.setattr(studies, "run_study", run_study)
     result = run("experiments", "noise", "--quick", "--out", tmp_path, "--seed", 5)
     assert result.exit_code == 0
     assert result.stdout.split() == [str(tmp_path / "tables" / "noise.csv")]
+    assert asked["study"] is studies.STUDIES["noise"]
     assert (asked["out"], asked["quick"], asked["seed"]) == (tmp_path, True, 5)
 
 

@@ -1,4 +1,4 @@
-"""Table: learned flights beside the optimum of the agent's rewards."""
+"""Table: learned flights and the optimum of the agent's rewards."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Table: lengths and steps of the final flights, beside the paper's and the shortest possible."""
+"""Table: lengths and steps of the final flights, the paper's, and the shortest possible."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class Entry:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Performance of a method, beside the shortest flight [m] of the same world."""
+    """Performance of a method, and the length [m] of the shortest flight in its world."""
 
     entry: Entry
     performance: Performance
