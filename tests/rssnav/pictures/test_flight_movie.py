@@ -73,12 +73,12 @@ def test_a_flight_is_that_of_its_run(trained):
     assert np.array_equal(flight.position, result.trajectory_m(2))
     assert flight.length_m == result.path_length_m[2]
     assert flight.rss_dbm.shape == (len(flight.position),)
-    with pytest.raises(MovieError, match="run 3: the training holds the runs 0 to 2"):
+    with pytest.raises(MovieError, match="run 3: the training has runs 0 to 2"):
         Flight.of(result, run=3)
 
 
 def test_formats_that_cannot_be_written_are_refused(room, radio_map, trained, tmp_path):
-    with pytest.raises(MovieError, match=r"give one of \.gif, \.mp4"):
+    with pytest.raises(MovieError, match=r"use one of \.gif, \.mp4"):
         save_flight_movie(room, radio_map, trained, tmp_path / "flight.avi")
     if shutil.which("ffmpeg") is None:
         with pytest.raises(MovieError, match=r"needs the program ffmpeg.*flight\.gif instead"):
@@ -106,4 +106,4 @@ def test_the_command_makes_the_film(tmp_path):
     assert film.read_bytes().startswith(b"GIF89a")
     refused = run("fly", plan, training, "--map", radio_map, "-o", film, "--run", 4)
     assert refused.exit_code == 1
-    assert refused.stderr == "rssnav: run 4: the training holds the runs 0 to 0\n"
+    assert refused.stderr == "rssnav: run 4: the training has runs 0 to 0\n"
