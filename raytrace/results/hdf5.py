@@ -1,13 +1,22 @@
 """HDF5 files built in memory, and read without trust in what they say.
 
-A file of a stranger, or one that a disk has damaged, can claim anything: shapes of terabytes, links
-to other files, strings where numbers belong. `Checked` looks at kind, shape and size of everything
+A stranger's file, or one that a disk has damaged, can claim anything: shapes of terabytes, links to
+other files, strings where numbers belong. `Checked` looks at kind, shape and size of everything
 before it allocates, and at the numbers before it returns them. Sizes that must agree have a name:
 the first array to use it sets it, and every later one must have the same.
+
+A file ends with a hash of its content, so that damage is found before HDF5 sees it. A file that
+other programs have changed has lost this hash, and is read all the same.
 """
 
-from collections.abc import Callable, Mapping
+import hashlib
+import io
+import re
+import struct
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
@@ -18,6 +27,8 @@ from numpy.typing import NDArray
 Shape = tuple[int | str, ...]
 """A shape; a name stands for a size that all arrays with this name share."""
 
+MAX_FILE_BYTES = 1 << 32
+"""Largest file that is read."""
 MAX_VALUES = 1 << 27
 """Most values of one dataset."""
 MAX_TEXT_BYTES = 1 << 26
@@ -25,6 +36,8 @@ MAX_TEXT_BYTES = 1 << 26
 
 _EXPANSION = 1100
 """No stored byte gives more than so many: deflate reaches 1032."""
+_MARK = b"rssnav sha256 "
+_HASH_BYTES = 32
 _KINDS = {"f": "floating-point numbers", "i": "integers", "u": "integers", "b": "booleans"}
 
 
@@ -37,7 +50,7 @@ def hdf5_bytes(fill: Callable[[h5py.File], None]) -> bytes:
 
     The HDF5 library may crash the process when a disk fills up while it writes to a file. Bytes
     that are written afterwards fail with an ordinary `OSError`. The file has checksums on its
-    metadata (format of HDF5 1.10).
+    metadata (format of HDF5 1.10), and a hash of its content behind its end.
 
     Parameters
     ----------
@@ -49,7 +62,8 @@ def hdf5_bytes(fill: Callable[[h5py.File], None]) -> bytes:
     ) as file:
         fill(file)
         file.flush()
-        return file.id.get_file_image()
+        content = file.id.get_file_image()
+    return content + _MARK + hashlib.sha256(content).digest()
 
 
 def write_array(
@@ -63,6 +77,65 @@ def write_array(
     dataset = group.create_dataset(name, data=array, **options)
     dataset.attrs.update(units=units, long_name=long_name)
     return dataset
+
+
+@contextmanager
+def open_checked(path: Path) -> Generator["Checked"]:
+    """Open an HDF5 file that is not trusted.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Raises
+    ------
+    Hdf5ContentError
+        Where it cannot be read, or what is made of it within the block raises an error for it.
+    OSError
+        Where the system cannot read it.
+    """
+    size = path.stat().st_size
+    if size > MAX_FILE_BYTES:
+        raise Hdf5ContentError(f"{size} bytes; at most {MAX_FILE_BYTES} are read")
+    content = path.read_bytes()
+    _check_content(content)
+    try:
+        with h5py.File(io.BytesIO(content), "r") as file:
+            yield Checked(file)
+    except Hdf5ContentError:
+        raise
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError, OverflowError) as error:
+        raise Hdf5ContentError(str(error)) from error
+
+
+def _check_content(content: bytes) -> None:
+    """Find damage before the HDF5 library sees it, which can loop for ever in damaged heaps."""
+    body, mark, digest = content.rpartition(_MARK)
+    if mark and len(digest) == _HASH_BYTES and hashlib.sha256(body).digest() != digest:
+        raise Hdf5ContentError("the content has changed since it was written")
+    for found in re.finditer(rb"GCOL\x01", content):
+        if not _is_sound_heap(content, found.start()):
+            raise Hdf5ContentError("a heap of texts is damaged")
+
+
+def _is_sound_heap(content: bytes, at: int) -> bool:
+    """Whether the objects of a global heap fill it (HDF5 File Format Specification, III.E)."""
+    header = content[at : at + 16]
+    if len(header) < 16:
+        return False
+    size = struct.unpack_from("<Q", header, 8)[0]
+    if not 16 < size <= len(content) - at:
+        return False
+    end, at = at + size, at + 16
+    while at + 16 <= end:
+        index, length = struct.unpack_from("<H6xQ", content, at)
+        if index == 0:
+            return length == end - at
+        if length == 0 or length > end - at - 16:
+            return False
+        at += 16 + (length + 7) // 8 * 8
+    return True
 
 
 @dataclass(frozen=True)
@@ -137,8 +210,12 @@ class Checked:
     def _attribute(self, name: str) -> Any:
         found = self.group.attrs.get_id(name)
         is_text = h5py.check_string_dtype(found.dtype) is not None
-        n_bytes = found.dtype.itemsize * int(np.prod(found.shape, dtype=np.float64))
-        if n_bytes > MAX_TEXT_BYTES or not (is_text or found.dtype.kind in "fiub"):
+        n_bytes = found.dtype.itemsize * np.prod(found.shape or (1,), dtype=np.float64)
+        if (
+            found.shape is None
+            or n_bytes > MAX_TEXT_BYTES
+            or not (is_text or found.dtype.kind in "fiub")
+        ):
             raise Hdf5ContentError(f"attribute {name!r}: expected a number, numbers or text")
         value = self.group.attrs[name]
         if isinstance(value, bytes):
