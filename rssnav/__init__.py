@@ -14,11 +14,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rssnav.agents import Agent, DecisionProcess, LocationAgent, QLearning, RssAgent
+    from rssnav.agent_description import AgentDescription
+    from rssnav.agents import Agent, LocationAgent, RssAgent
+    from rssnav.decision_process import DecisionProcess
+    from rssnav.discrete_states import ExactStates, Fluctuation, IntervalStates, ToleranceStates
+    from rssnav.learning_parameters import QLearning
     from rssnav.planning import Path, Solution, greedy_path, shortest_path, value_iteration
     from rssnav.result_file import ResultFileError
     from rssnav.results import Schedule, TrainingResult
-    from rssnav.states import ExactStates, Fluctuation, IntervalStates, ToleranceStates
     from rssnav.training import TrainingInterrupted, train
     from rssnav.world import ACTION_NAMES, ACTIONS, GridWorld, WorldError
 
@@ -26,6 +29,7 @@ __all__ = [
     "ACTIONS",
     "ACTION_NAMES",
     "Agent",
+    "AgentDescription",
     "DecisionProcess",
     "ExactStates",
     "Fluctuation",
@@ -49,10 +53,13 @@ __all__ = [
 ]
 
 _HOMES = {
-    "agents": ("Agent", "DecisionProcess", "LocationAgent", "QLearning", "RssAgent"),
+    "agent_description": ("AgentDescription",),
+    "agents": ("Agent", "LocationAgent", "RssAgent"),
+    "decision_process": ("DecisionProcess",),
+    "discrete_states": ("ExactStates", "Fluctuation", "IntervalStates", "ToleranceStates"),
+    "learning_parameters": ("QLearning",),
     "planning": ("Path", "Solution", "greedy_path", "shortest_path", "value_iteration"),
     "results": ("Schedule", "TrainingResult"),
-    "states": ("ExactStates", "Fluctuation", "IntervalStates", "ToleranceStates"),
     "result_file": ("ResultFileError",),
     "training": ("TrainingInterrupted", "train"),
     "world": ("ACTIONS", "ACTION_NAMES", "GridWorld", "WorldError"),

@@ -1,9 +1,9 @@
-"""Searchers that do not learn from flight to flight: what reinforcement learning is compared with.
+"""Searchers that do not learn from flight to flight, as baselines for reinforcement learning.
 
-Each flies once from the start, as long as ``max_steps`` seconds, until a reading exceeds the level
-at which the RSS agent's episodes end. :class:`RandomWalk` and :class:`RssAscent` know nothing but
-their readings; :class:`ParticleFilter` also knows the floor plan, its own place in it, and a model
-of how RSS falls with distance.
+Each flies once from the start, at most ``max_steps`` seconds, until a reading exceeds the level
+at which the RSS agent's episodes end. :class:`RandomWalk` and :class:`RssAscent` know only their
+readings; :class:`ParticleFilter` also knows the floor plan, its own position in it, and a model of
+how RSS falls with distance.
 """
 
 from __future__ import annotations
@@ -17,18 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.threads import n_threads
-from rssnav.agents import QLearning, RssAgent
-from rssnav.kernels import particle_filter, searching
+from rssnav.agents import RssAgent
+from rssnav.discrete_states import Fluctuation
+from rssnav.kernels import particle_filter, searchers
 from rssnav.kernels.common import Moves
 from rssnav.kernels.particle_filter import Belief, Chart, Model
-from rssnav.kernels.searching import Flight, Receiver
-from rssnav.learners import moves_of
+from rssnav.kernels.searchers import Flight, Receiver
+from rssnav.learning_parameters import QLearning
+from rssnav.learning_rules import moves_of
 from rssnav.planning import path_length_m
-from rssnav.states import Fluctuation
 from rssnav.training import generator_states
 from rssnav.world import GridWorld
 
-_STREAM = 1 << 32  # realisation numbers of searches: apart from those of trainings
+_STREAM = 1 << 32  # added to the run numbers of searches: streams that no training uses
 
 
 @dataclass(frozen=True)
@@ -43,10 +44,10 @@ class RandomWalk:
 
 @dataclass(frozen=True)
 class RssAscent:
-    """Greedy ascent of the RSS: go on to the first neighbour tried that reads more than here.
+    """Greedy ascent of the RSS: move to the first neighbour tried that reads more than here.
 
-    Neighbours are tried by flying there (and back, where it reads no more), the one straight ahead
-    first, the others in random order.
+    A neighbour is tried by flying there (and back, if it does not read more), the one straight
+    ahead first, the others in random order.
 
     Parameters
     ----------
@@ -80,7 +81,7 @@ class ParticleFilter:
     Parameters
     ----------
     particles : int
-        Hypotheses kept.
+        Number of hypotheses.
     power_dbm : (float, float)
         Range of p, the reading at 1 m [dBm]. 25 dBm at 2.4 GHz are -15 dBm in free space.
     exponent : (float, float)
@@ -138,11 +139,11 @@ class SearchResult:
     Attributes
     ----------
     found : (R,) bool
-        Whether the flight ended in a cell whose steady RSS says that the source is there.
+        Whether the flight ended in a cell whose RSS without fluctuation exceeds the level.
     false_alarm : (R,) bool
-        Whether it ended by a reading that said so wrongly, by fluctuation.
+        Whether it ended elsewhere, by a fluctuation of the reading.
     steps : (R,) int64
-        Seconds flown, those spent on further readings in a cell included.
+        Seconds flown, including those spent on further readings in a cell.
     length_m : (R,) float64
         Length flown [m].
     flights : tuple of (n + 1,) int32
@@ -167,33 +168,33 @@ def search(
     fluctuation: Fluctuation | None = None,
     threads: int | None = None,
 ) -> SearchResult:
-    """Fly a searcher from the start, many times over.
+    """Fly a searcher from the start, in many independent runs.
 
     Parameters
     ----------
     world : GridWorld
         Where it flies.
     searcher : RandomWalk, RssAscent or ParticleFilter
-        What it goes by.
+        Rule that it flies by.
     runs : int
         Flights.
     max_steps : int
-        Seconds after which a flight is given up.
+        Seconds after which a flight ends without success.
     seed : int
         Same seed, same flights, for any number of threads.
     terminal_dbm : float
-        Reading above which the source is found [dBm].
+        Reading above which the transmitter is found [dBm].
     fluctuation : Fluctuation, optional
         How readings differ from the map; not at all by default.
     threads : int, optional
-        Threads that flights are spread over; all cores by default.
+        Number of threads; all cores by default.
 
     Raises
     ------
     ValueError
         For a number out of range.
     WorldError
-        When the RSS agent could not fly in this world either.
+        When an RSS agent cannot fly in this world.
     """
     for name, value in (("runs", runs), ("max_steps", max_steps)):
         if value < 1:
@@ -229,7 +230,7 @@ Fly = Callable[[Receiver, Flight], bool]
 def _receivers(
     world: GridWorld, fluctuation: Fluctuation, found_dbm: float
 ) -> Callable[[], Receiver]:
-    """Receivers that share all but their fluctuation."""
+    """Function that makes receivers, which share all but their fluctuation."""
     return lambda: Receiver(
         world.rss_dbm,
         fluctuation.sigma_db,
@@ -240,13 +241,13 @@ def _receivers(
 
 
 def _flying(searcher: Searcher, world: GridWorld, moves: Moves) -> Fly:
-    """Searcher as a function that fills a flight."""
+    """Function that flies a searcher and logs the flight."""
     if isinstance(searcher, RandomWalk):
-        return lambda receiver, flight: searching.walk(
+        return lambda receiver, flight: searchers.walk(
             moves, receiver, flight, flight.states.size - 1
         )
     if isinstance(searcher, RssAscent):
-        return lambda receiver, flight: searching.ascend(
+        return lambda receiver, flight: searchers.ascend(
             moves, receiver, flight, searcher.readings, searcher.escape_steps
         )
     model = _model(searcher, world)
@@ -262,7 +263,7 @@ def _flying(searcher: Searcher, world: GridWorld, moves: Moves) -> Fly:
 
 
 def _model(searcher: ParticleFilter, world: GridWorld) -> Model:
-    """Prior over the part of the plan that can be reached, and the likelihood."""
+    """Prior over the reachable part of the plan, and the likelihood."""
     low_xy, high_xy = world.position.min(axis=0), world.position.max(axis=0)
     ranges = (searcher.power_dbm, searcher.exponent)
     return Model(

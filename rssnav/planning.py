@@ -1,8 +1,8 @@
-"""What an agent that knew everything would do: shortest paths and value iteration.
+"""Optimal flights, the oracles that learning is compared with: shortest paths, value iteration.
 
-These are the oracles that learning is judged by. Shortest paths come from Dijkstra's algorithm
-over the move graph, counting steps or metres; value iteration solves the same decision process
-the agents learn in, so its policy is what Q-learning would converge to.
+Shortest paths come from Dijkstra's algorithm over the graph of moves, counting steps or metres;
+value iteration solves the decision process that an agent learns in, so its policy is the one that
+Q-learning converges to.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from rssnav.agents import DecisionProcess
+from rssnav.decision_process import DecisionProcess
 from rssnav.world import GridWorld
 
 
@@ -26,7 +26,9 @@ class Path:
     Attributes
     ----------
     states : (n + 1,) int32
-        States visited, the start first.
+        States of the decision process visited, the start first.
+    cells : (n + 1,) int32
+        Cell of each of them: the row of the world's arrays.
     reached : bool
         Whether it ends in a terminal state.
     length_m : float
@@ -34,6 +36,7 @@ class Path:
     """
 
     states: NDArray[np.int32]
+    cells: NDArray[np.int32]
     reached: bool
     length_m: float
 
@@ -62,16 +65,16 @@ class Solution:
     sweeps: int
 
 
-def path_length_m(world: GridWorld, states: NDArray[np.int32]) -> float:
-    """Length [m] of a flight through states (n + 1,)."""
-    steps = np.diff(world.position[states], axis=0)
+def path_length_m(world: GridWorld, cells: NDArray[np.int32]) -> float:
+    """Length [m] of a flight through cells (n + 1,)."""
+    steps = np.diff(world.position[cells], axis=0)
     return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
 
 
 def shortest_path(
     world: GridWorld, terminal: NDArray[np.bool_], cost: Literal["steps", "metres"] = "steps"
 ) -> Path:
-    """Shortest flight from the start to any terminal state.
+    """Shortest flight from the start to any terminal cell; its states are the cells.
 
     Parameters
     ----------
@@ -80,20 +83,19 @@ def shortest_path(
     terminal : (S,) bool
         Where a flight may end.
     cost : {"steps", "metres"}
-        What is minimised; the agents pay per step, straight or diagonal alike. Flights of equally
-        many steps are told apart by their length.
+        What is minimised; the agents pay per step, straight or diagonal alike. Of the flights
+        with the fewest steps the shortest is taken.
 
     Raises
     ------
     ValueError
-        When no terminal state can be reached.
+        When no terminal cell can be reached.
     """
-    state, action = np.nonzero(world.next_state >= 0)
+    state, action = np.nonzero(world.action_mask)
     length_m = world.step_length_m[action]
-    # A thousandth of the relative length settles ties between flights of equally many steps as
-    # long as they have fewer than 1000 / sqrt(2) steps; world sizes are far below.
-    tie_m = length_m / (length_m.max() * 4.0 * world.n_states)
-    weight = length_m if cost == "metres" else 1.0 + tie_m
+    # Fewer than n_states steps sum to less than 1/4 of a step: this only breaks ties.
+    tie_break = length_m / (length_m.max() * 4.0 * world.n_states)
+    weight = length_m if cost == "metres" else 1.0 + tie_break
     graph = csr_array(
         (weight, (state, world.next_state[state, action])), shape=(world.n_states,) * 2
     )
@@ -105,7 +107,7 @@ def shortest_path(
     while states[-1] != world.start_state:
         states.append(int(previous[states[-1]]))
     path = np.array(states[::-1], dtype=np.int32)
-    return Path(path, True, path_length_m(world, path))
+    return Path(path, path, True, path_length_m(world, path))
 
 
 def value_iteration(
@@ -124,28 +126,24 @@ def value_iteration(
     """
     if not 0.0 <= gamma < 1.0:
         raise ValueError(f"gamma: {gamma!r} must lie in [0, 1) for value iteration to converge")
-    impossible = process.next_state < 0
     value = np.zeros(process.terminal.size)
     sweeps, change = 0, np.inf
     while change * gamma > tolerance * (1.0 - gamma):
-        new = np.max(_backup(process, impossible, value, gamma), axis=1)
+        new = np.max(_backup(process, value, gamma), axis=1)
         new[process.terminal] = 0.0
         change = float(np.max(np.abs(new - value)))
         value, sweeps = new, sweeps + 1
-    q = _backup(process, impossible, value, gamma)
-    q[process.terminal] = np.where(impossible[process.terminal], -np.inf, 0.0)
+    q = _backup(process, value, gamma)
+    q[process.terminal] = np.where(process.action_mask[process.terminal], 0.0, -np.inf)
     return Solution(q, np.argmax(q, axis=1).astype(np.int32), sweeps)
 
 
 def _backup(
-    process: DecisionProcess,
-    impossible: NDArray[np.bool_],
-    value: NDArray[np.float64],
-    gamma: float,
+    process: DecisionProcess, value: NDArray[np.float64], gamma: float
 ) -> NDArray[np.float64]:
     """One application of the Bellman operator, shape (S, 8)."""
     q = process.reward + gamma * value[process.next_state]
-    return np.where(impossible, -np.inf, q)
+    return np.where(process.action_mask, q, -np.inf)
 
 
 def greedy_path(world: GridWorld, process: DecisionProcess, q: NDArray[np.float64]) -> Path:
@@ -156,7 +154,7 @@ def greedy_path(world: GridWorld, process: DecisionProcess, q: NDArray[np.float6
     world : GridWorld
         Gives the lengths.
     process : DecisionProcess
-        Gives moves, start and goal.
+        Gives steps, start and goal.
     q : (S, 8) float64
         Action values, -inf where impossible; the first maximum is taken.
     """
@@ -168,7 +166,8 @@ def greedy_path(world: GridWorld, process: DecisionProcess, q: NDArray[np.float6
             break
         seen.add(states[-1])
     path = np.array(states, dtype=np.int32)
-    return Path(path, bool(process.terminal[path[-1]]), path_length_m(world, path))
+    cells = process.cell_of_state[path]
+    return Path(path, cells, bool(process.terminal[path[-1]]), path_length_m(world, cells))
 
 
 def discounted_return(process: DecisionProcess, states: NDArray[np.int32], gamma: float) -> float:

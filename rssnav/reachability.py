@@ -1,4 +1,4 @@
-"""How far a flight from a plan's start gets at each speed, which depends on the walls alone."""
+"""What a flight from a plan's start can reach at each speed; depends on the walls alone."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ SPEEDS = (1, 2, 4)
 
 @dataclass(frozen=True)
 class Reach:
-    """What a flight gets to at one speed.
+    """What a flight can reach at one speed.
 
     Attributes
     ----------
     speed : int
         Cells along an axis in a step.
     steps : int or None
-        Fewest from the start to the source; None where the source cannot be reached.
+        Fewest from the start to the transmitter; None if it cannot be reached.
     length_m : float or None
-        Of that flight [m].
+        Length of that flight [m].
     missed : (n, 2) float64
-        Centres (x, y) [m] of the cells that steps of this length could land on, if walls did not
-        keep the flight from them; empty where the source cannot be reached.
+        Centres (x, y) [m] of free cells on the lattice of steps that cannot be reached because of
+        walls; empty if the transmitter cannot be reached.
     n_cells : int
-        How many cells steps of this length could land on.
+        Number of free cells on the lattice of steps.
     """
 
     speed: int
@@ -46,17 +46,17 @@ class Reach:
 
 
 def reaches(plan: FloorPlan, speeds: tuple[int, ...] = SPEEDS) -> tuple[Reach, ...]:
-    """Find how far a flight gets, at each speed.
+    """Find what a flight can reach, at each speed.
 
     Raises
     ------
     WorldError
-        Where the source can be reached at none of the speeds.
+        When the transmitter can be reached at none of the speeds.
     """
     radio_map = _map_without_readings(plan)
     found = tuple(_reach(plan, radio_map, speed) for speed in speeds)
     if all(reach.steps is None for reach in found):
-        GridWorld.from_map(plan, radio_map, speeds[-1])  # raises, and says what would be right
+        GridWorld.from_map(plan, radio_map, speeds[-1])  # raises and names speeds that can
     return found
 
 
@@ -70,7 +70,7 @@ def _reach(plan: FloorPlan, radio_map: RadioMap, speed: int) -> Reach:
 
 
 def unreached(reach: Reach) -> Finding | None:
-    """Tell that cells cannot be reached, at the largest area of them; None where all can."""
+    """Report cells that cannot be reached, at their largest area; None if all can."""
     if not len(reach.missed):
         return None
     step_m = CELL_SIZE_M * reach.speed
@@ -82,18 +82,18 @@ def unreached(reach: Reach) -> Finding | None:
     area_of = areas[tuple(cells.T)]
     largest = int(np.bincount(area_of).argmax())
     x, y = reach.missed[area_of == largest].mean(axis=0)
-    share = 100 * len(reach.missed) / reach.n_cells
+    percent = 100 * len(reach.missed) / reach.n_cells
     return Finding(
         "warning",
         "not reached",
-        f"at speed {reach.speed}, {len(reach.missed)} of {reach.n_cells} cells ({share:.0f} %) "
+        f"at speed {reach.speed}, {len(reach.missed)} of {reach.n_cells} cells ({percent:.0f} %) "
         f"cannot be reached from the start; {(area_of == largest).sum()} of them lie around here",
         (float(x), float(y)),
     )
 
 
 def _missed(plan: FloorPlan, world: GridWorld, grid: Grid) -> tuple[NDArray[np.float64], int]:
-    """Centres of the cells on the start's lattice that are free but not reached; free cells."""
+    """Centres of free cells on the start's lattice that are not reached; number of free cells."""
     i_x, i_y = np.meshgrid(np.arange(len(grid.x)), np.arange(len(grid.y)))
     start_y, start_x = world.cell[world.start_state]
     on_lattice = ((i_x - start_x) % world.speed == 0) & ((i_y - start_y) % world.speed == 0)
@@ -108,7 +108,7 @@ def _missed(plan: FloorPlan, world: GridWorld, grid: Grid) -> tuple[NDArray[np.f
 
 
 def _map_without_readings(plan: FloorPlan) -> RadioMap:
-    """Make a map that reads 0 dBm everywhere, for what depends on the walls alone."""
+    """Make a map of 0 dBm everywhere, for worlds of which only the walls matter."""
     grid = Grid.over(plan.bounds, CELL_SIZE_M, min(HEIGHT_M, 0.5 * plan.height_m))
     zeros = np.zeros(grid.shape)
     return RadioMap(

@@ -1,13 +1,16 @@
 """TrainingResult <-> HDF5.
 
-One dataset an array of the result and of its world, the parameters as attributes of the groups
-``agent``, ``learning`` and ``schedule``, so that a file is readable without this project. It is
-written beside its place and then renamed: a killed run leaves the old file or none.
+One dataset per array of the result and of its world; the parameters are attributes of the groups
+``agent``, ``learning`` and ``schedule``, so a file is readable without this project. It is written
+to a temporary file and then renamed: a killed run leaves the old file or none.
+
+Version 2 stores agents of any class and the table ``cell_of_state``; files of version 1 are read.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,58 +20,80 @@ from numpy.typing import NDArray
 
 from atomicfiles import atomic_write
 from raytrace.results.hdf5 import hdf5_bytes
-from rssnav.agents import Agent, LocationAgent, QLearning, RssAgent
+from rssnav.agent_description import AgentDescription, describe, restore
+from rssnav.agents import Agent, LocationAgent, RssAgent
+from rssnav.discrete_states import (
+    ExactStates,
+    Fluctuation,
+    IntervalStates,
+    StateRule,
+    ToleranceStates,
+)
+from rssnav.learning_parameters import QLearning
 from rssnav.results import Schedule, TrainingResult
-from rssnav.states import ExactStates, Fluctuation, IntervalStates, StateRule, ToleranceStates
 from rssnav.world import GridWorld
 
 FORMAT = "rssnav-training"
-VERSION = 1
+VERSION = 2
+_VERSIONS = (1, VERSION)
 
 # units and long name of each array
 _RESULT_ARRAYS = {
     "run_ids": ("1", "number of the realisation"),
     "steps": ("1", "steps of each episode, -1 after the last"),
     "diagonal_steps": ("1", "diagonal steps of each episode, -1 after the last"),
-    "truncated": ("1", "whether each episode was cut at max_steps"),
+    "truncated": ("1", "whether each episode was truncated at max_steps"),
     "episodes_flown": ("1", "episodes of the run"),
-    "visit_counts": ("1", "visits of each state up to each snapshot episode, all runs"),
+    "cell_of_state": ("1", "cell of each state of the decision process"),
+    "visit_counts": ("1", "visits of each cell up to each snapshot episode, all runs"),
     "converged_episode": ("1", "episodes flown at convergence, -1 without"),
     "converged_steps": ("1", "steps flown at convergence, -1 without"),
     "converged_cpu_s": ("s", "CPU time up to convergence"),
     "cpu_s": ("s", "CPU time of the run"),
-    "trajectories": ("1", "states of the final greedy flight, -1 after the last"),
-    "reached": ("1", "whether the final flight reaches the source"),
+    "trajectories": ("1", "cells of the final greedy flight, -1 after the last"),
+    "reached": ("1", "whether the final flight reaches the transmitter"),
     "path_steps": ("1", "steps of the final flight"),
     "path_length_m": ("m", "length of the final flight"),
-    "n_labels": ("1", "states the agent told apart"),
+    "n_discrete_states": ("1", "discrete states that the agent distinguished"),
 }
+_DATASET_NAMES = {"n_discrete_states": "n_labels"}  # where it differs from the attribute
 _WORLD_ARRAYS = {
     "next_state": ("1", "state after each action, -1 where it is impossible"),
     "rss_dbm": ("dBm", "power-sum RSS"),
     "position": ("m", "cell centre (x, y)"),
     "cell": ("1", "indices (i_y, i_x) in the radio map"),
-    "distance_m": ("m", "horizontal distance to the source"),
+    "distance_m": ("m", "horizontal distance to the transmitter"),
     "step_length_m": ("m", "length of each action's step"),
 }
-_Q_ARRAY = {"q": ("1", "final Q of each cell and action, -inf where it is impossible")}
+_Q_ARRAY = {"q": ("1", "final Q of each state and action, -inf where it is impossible")}
 _WORLD_SCALARS = ("start_state", "speed", "shape", "source", "plan_name", "plan_sha256")
 
 
 class ResultFileError(ValueError):
-    """A file is no training result of this format and version, or is damaged."""
+    """A file is not a training result of this format and version, or it is damaged."""
 
 
 def save_result(result: TrainingResult, path: str | Path) -> None:
-    """Write a result to an HDF5 file, replacing it only once it is complete."""
-    content = hdf5_bytes(lambda file: _write(result, file))
+    """Write a result to an HDF5 file, replacing it only once it is complete.
+
+    Raises
+    ------
+    TypeError
+        When the agent is not a dataclass, or a field of it cannot be stored.
+    """
+    agent = describe(result.agent)
+    content = hdf5_bytes(lambda file: _write(result, agent, file))
     with atomic_write(path) as temporary:
         temporary.write_bytes(content)
 
 
-def _write(result: TrainingResult, file: h5py.File) -> None:
+def _write(result: TrainingResult, agent: AgentDescription, file: h5py.File) -> None:
     file.attrs["format"], file.attrs["version"] = FORMAT, VERSION
-    _write_parameters(file, result)
+    file.attrs["agent"] = agent.name
+    _write_agent(file.create_group("agent"), agent)
+    for name in ("learning", "schedule"):
+        parameters = dataclasses.asdict(getattr(result, name))
+        file.create_group(name).attrs.update(parameters)
     world = file.create_group("world")
     _write_arrays(world, result.world, _WORLD_ARRAYS)
     for name in _WORLD_SCALARS:
@@ -78,23 +103,15 @@ def _write(result: TrainingResult, file: h5py.File) -> None:
         _write_arrays(file, result, _Q_ARRAY)
 
 
-def load_result(path: str | Path) -> TrainingResult:
-    """Read a result.
-
-    Raises
-    ------
-    FileNotFoundError
-        When there is no such file.
-    ResultFileError
-        When the file is damaged, of another format, or of another version.
-    """
+def load_result(path: str | Path, agents: Sequence[type] = ()) -> TrainingResult:
+    """Read a result, as :meth:`TrainingResult.load <rssnav.TrainingResult.load>` describes."""
     path = Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such training result")
     try:
         with h5py.File(path, "r") as file:
             _check_format(path, file)
-            return _read(file)
+            return _read(file, agents)
     except ResultFileError:
         raise
     except (OSError, KeyError, TypeError, ValueError) as error:
@@ -111,9 +128,10 @@ def _check_format(path: Path, file: h5py.File) -> None:
             "kind of file?"
         )
     version = _attributes(file)["version"]
-    if version != VERSION:
+    if version not in _VERSIONS:
         raise ResultFileError(
-            f"{path}: version {version} of the format, this program reads {VERSION}; train again"
+            f"{path}: version {version} of the format, this program reads "
+            f"{' and '.join(map(str, _VERSIONS))}; train again"
         )
 
 
@@ -121,31 +139,75 @@ def _write_arrays(group: h5py.Group, owner: object, names: dict[str, tuple[str, 
     for name, (units, long_name) in names.items():
         array: NDArray[Any] = getattr(owner, name)
         compression = "gzip" if array.size else None  # an empty dataset cannot be chunked
-        dataset = group.create_dataset(name, data=array, compression=compression)
+        stored = _DATASET_NAMES.get(name, name)
+        dataset = group.create_dataset(stored, data=array, compression=compression)
         dataset.attrs["units"], dataset.attrs["long_name"] = units, long_name
 
 
-def _write_parameters(file: h5py.File, result: TrainingResult) -> None:
-    for name, values in (
-        ("agent", agent_parameters(result.agent)),
-        ("learning", dataclasses.asdict(result.learning)),
-        ("schedule", dataclasses.asdict(result.schedule)),
-    ):
-        group = file.create_group(name)
-        for key, value in values.items():
-            group.attrs[key] = value
+def _write_agent(group: h5py.Group, agent: AgentDescription) -> None:
+    """Write the class as an attribute, scalars as attributes, tuples and arrays as datasets."""
+    group.attrs["class"] = agent.class_path
+    for name, value in agent.parameters.items():
+        if isinstance(value, AgentDescription):
+            _write_agent(group.create_group(name), value)
+        elif isinstance(value, tuple | np.ndarray):
+            dataset = group.create_dataset(name, data=value)
+            dataset.attrs["type"] = "tuple" if isinstance(value, tuple) else "array"
+        else:
+            group.attrs[name] = h5py.Empty("f8") if value is None else value
 
 
-def _read(file: h5py.File) -> TrainingResult:
-    arrays: dict[str, Any] = {name: _array(file, name) for name in _RESULT_ARRAYS}
+def _read_agent(group: h5py.Group, name: str = "") -> AgentDescription:
+    values = _attributes(group)
+    class_path = str(values.pop("class"))
+    for key, item in group.items():
+        values[key] = _read_agent(item) if isinstance(item, h5py.Group) else _read_sequence(item)
+    parameters = {k: None if isinstance(v, h5py.Empty) else v for k, v in values.items()}
+    return AgentDescription(class_path, name, parameters)
+
+
+def _read_sequence(dataset: h5py.Dataset) -> NDArray[Any] | tuple[Any, ...]:
+    text = h5py.check_string_dtype(dataset.dtype) is not None
+    values: NDArray[Any] = np.asarray(dataset.asstr()[()] if text else dataset[()])
+    return tuple(values.tolist()) if dataset.attrs["type"] == "tuple" else values
+
+
+def _read(file: h5py.File, agents: Sequence[type]) -> TrainingResult:
+    world = _read_world(_group(file, "world"))
+    arrays: dict[str, Any] = {
+        name: _array(file, _DATASET_NAMES.get(name, name))
+        for name in _RESULT_ARRAYS
+        if name != "cell_of_state"
+    }
+    if file.attrs["version"] == 1:
+        agent = _agent_of_version_1(_attributes(_group(file, "agent")))
+        arrays["cell_of_state"] = np.arange(world.n_states, dtype=np.int32)
+    else:
+        agent = restore(_read_agent(_group(file, "agent"), str(file.attrs["agent"])), agents)
+        arrays["cell_of_state"] = _array(file, "cell_of_state")
     return TrainingResult(
-        world=_read_world(_group(file, "world")),
-        agent=agent_from_parameters(_attributes(_group(file, "agent"))),
+        world=world,
+        agent=agent,
         learning=QLearning(**_attributes(_group(file, "learning"))),
         schedule=_read_schedule(_attributes(_group(file, "schedule"))),
         q=_array(file, "q") if "q" in file else None,
         **arrays,
     )
+
+
+def _agent_of_version_1(values: dict[str, Any]) -> Agent:
+    """Agent of a file of version 1, which kept its parameters in one flat table."""
+    if values["kind"] == "location":
+        return LocationAgent(values["terminal_distance_m"])
+    if values["kind"] != "rss":
+        raise ValueError(f"kind: {values['kind']!r} must be 'rss' or 'location'")
+    states: StateRule = ExactStates()
+    if values["states"] == "tolerance":
+        states = ToleranceStates(values["threshold_db"])
+    elif values["states"] == "intervals":
+        states = IntervalStates(tuple(float(edge) for edge in values["edges_dbm"]))
+    fluctuation = Fluctuation(values["sigma_db"], values["correlation"])
+    return RssAgent(states, values["terminal_dbm"], fluctuation)
 
 
 def _read_world(group: h5py.Group) -> GridWorld:
@@ -164,14 +226,14 @@ def _read_schedule(values: dict[str, Any]) -> Schedule:
 def _array(group: h5py.Group, name: str) -> NDArray[Any]:
     dataset = group[name]
     if not isinstance(dataset, h5py.Dataset):
-        raise TypeError(f"{name} is no dataset")
+        raise TypeError(f"{name} is not a dataset")
     return dataset[()]
 
 
 def _group(file: h5py.File, name: str) -> h5py.Group:
     group = file[name]
     if not isinstance(group, h5py.Group):
-        raise TypeError(f"{name} is no group")
+        raise TypeError(f"{name} is not a group")
     return group
 
 
@@ -181,43 +243,3 @@ def _attributes(group: h5py.Group) -> dict[str, Any]:
         str(key): value.item() if isinstance(value, np.generic) else value
         for key, value in group.attrs.items()
     }
-
-
-def agent_parameters(agent: Agent) -> dict[str, Any]:
-    """An agent as a flat table of parameters."""
-    if isinstance(agent, LocationAgent):
-        return {"kind": agent.name, "terminal_distance_m": agent.terminal_distance_m}
-    if not isinstance(agent, RssAgent):
-        raise ResultFileError(
-            f"agent {agent.name!r}: only the trainings of RssAgent and LocationAgent can be kept "
-            "in a file; keep the arrays of yours, such as steps and trajectories, with numpy.savez"
-        )
-    return {
-        "kind": agent.name,
-        "terminal_dbm": agent.terminal_dbm,
-        **_state_parameters(agent.states),
-        **dataclasses.asdict(agent.fluctuation),
-    }
-
-
-def _state_parameters(states: StateRule) -> dict[str, Any]:
-    if isinstance(states, ToleranceStates):
-        return {"states": "tolerance", "threshold_db": states.threshold_db}
-    if isinstance(states, IntervalStates):
-        return {"states": "intervals", "edges_dbm": np.array(states.edges_dbm)}
-    return {"states": "exact"}
-
-
-def agent_from_parameters(values: dict[str, Any]) -> Agent:
-    """Agent that :func:`agent_parameters` came from."""
-    if values["kind"] == "location":
-        return LocationAgent(values["terminal_distance_m"])
-    if values["kind"] != "rss":
-        raise ValueError(f"kind: {values['kind']!r} is no known agent; 'rss' and 'location' are")
-    states: StateRule = ExactStates()
-    if values["states"] == "tolerance":
-        states = ToleranceStates(values["threshold_db"])
-    elif values["states"] == "intervals":
-        states = IntervalStates(tuple(float(edge) for edge in values["edges_dbm"]))
-    fluctuation = Fluctuation(values["sigma_db"], values["correlation"])
-    return RssAgent(states, values["terminal_dbm"], fluctuation)

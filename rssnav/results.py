@@ -1,8 +1,9 @@
-"""What training gives: :class:`TrainingResult`, and the schedule it was made by."""
+"""The result of a training, :class:`TrainingResult`, and its schedule."""
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.agents import Agent, QLearning
+from rssnav.agent_description import same_agent
+from rssnav.agents import Agent
+from rssnav.learning_parameters import QLearning
 from rssnav.world import GridWorld
 
 NO_STEP_LIMIT = int(np.iinfo(np.int64).max)
@@ -23,9 +26,9 @@ class Schedule:
     Attributes
     ----------
     runs : int
-        Realisations asked for.
+        Number of realisations.
     episodes : int
-        Episodes of each; with ``until_converged`` the most it may take.
+        Episodes of each; with ``until_converged`` the largest number.
     seed : int
         Seed of all of them.
     until_converged : bool
@@ -33,9 +36,9 @@ class Schedule:
     min_episodes : int
         Episodes that a run flies even when it converges earlier.
     snapshot_episodes : tuple of int
-        Episodes after which visit counts are kept.
+        Episodes after which visit counts are stored.
     max_total_steps : int
-        Steps after which a run flies no further episodes.
+        Steps after which a run starts no further episode.
     """
 
     runs: int
@@ -48,7 +51,7 @@ class Schedule:
 
     @property
     def guaranteed_episodes(self) -> int:
-        """Episodes that every run flies when no step limit ends it."""
+        """Episodes that every run flies without a step limit."""
         return min(self.episodes, self.min_episodes) if self.until_converged else self.episodes
 
 
@@ -56,41 +59,46 @@ class Schedule:
 class TrainingResult:
     """Finished realisations (R of them) of one agent in one world.
 
+    Visits and trajectories refer to the C cells of the world (the rows of its arrays), Q to the S
+    states of the agent's decision process.
+
     Attributes
     ----------
     run_ids : (R,) int64
-        Which realisations these are, ascending; fewer than ``schedule.runs`` after an interrupt.
+        Numbers of the realisations, ascending; fewer than ``schedule.runs`` after an interrupt.
     steps : (R, E) int32
         Steps of each episode; -1 after a run's last.
     diagonal_steps : (R, E) int32
         How many of them were diagonal; -1 after a run's last.
     truncated : (R, E) bool
-        Episodes cut at ``learning.max_steps``.
+        Episodes truncated at ``learning.max_steps``.
     episodes_flown : (R,) int64
         Episodes of each run.
-    visit_counts : (K, S) int64
-        Visits of each state, summed over the runs, up to each of the K snapshot episodes; the
+    cell_of_state : (S,) int32
+        Cell of each state.
+    visit_counts : (K, C) int64
+        Visits of each cell, summed over the runs, up to each of the K snapshot episodes; the
         start counts as visited when an episode begins.
     converged_episode : (R,) int64
         Episodes flown when the run converged; -1 where it did not.
     converged_steps : (R,) int64
-        Steps flown by then, so its flight time [s]; -1 where it did not.
+        Steps flown by then, equal to the flight time [s]; -1 where it did not.
     converged_cpu_s : (R,) float64
         CPU time by then [s]; of the whole run where it did not.
     cpu_s : (R,) float64
         CPU time of the run [s].
     trajectories : (R, T) int32
-        States of the final greedy flight, padded with -1.
+        Cells of the final greedy flight, padded with -1.
     reached : (R,) bool
-        Whether that flight reaches the source; otherwise it ends where it began to repeat.
+        Whether that flight reaches the transmitter; otherwise it ends where it starts to repeat.
     path_steps : (R,) int64
         Steps of that flight.
     path_length_m : (R,) float64
         Its length [m].
-    n_labels : (R,) int64
-        States the agent told apart in the end.
+    n_discrete_states : (R,) int64
+        Number of discrete states that the agent distinguished in the end.
     q : (R, S, 8) float64 or None
-        Final Q of each cell's steady reading, if it was asked for.
+        Final Q of each state (of its reading without fluctuation), with ``keep_q``.
     """
 
     world: GridWorld
@@ -102,6 +110,7 @@ class TrainingResult:
     diagonal_steps: NDArray[np.int32]
     truncated: NDArray[np.bool_]
     episodes_flown: NDArray[np.int64]
+    cell_of_state: NDArray[np.int32]
     visit_counts: NDArray[np.int64]
     converged_episode: NDArray[np.int64]
     converged_steps: NDArray[np.int64]
@@ -111,12 +120,12 @@ class TrainingResult:
     reached: NDArray[np.bool_]
     path_steps: NDArray[np.int64]
     path_length_m: NDArray[np.float64]
-    n_labels: NDArray[np.int64]
+    n_discrete_states: NDArray[np.int64]
     q: NDArray[np.float64] | None = None
 
     @property
     def complete(self) -> bool:
-        """Whether all realisations asked for are here."""
+        """Whether all realisations of the schedule are present."""
         return self.run_ids.size == self.schedule.runs
 
     @property
@@ -134,8 +143,8 @@ class TrainingResult:
 
     def trajectory_m(self, index: int) -> NDArray[np.float64]:
         """Positions (n + 1, 2) [m] of the final flight of the run at an index of ``run_ids``."""
-        states = self.trajectories[index]
-        return self.world.position[states[states >= 0]]
+        cells = self.trajectories[index]
+        return self.world.position[cells[cells >= 0]]
 
     def save(self, path: str | Path) -> None:
         """Write to an HDF5 file, replacing it only once it is complete."""
@@ -144,11 +153,28 @@ class TrainingResult:
         save_result(self, path)
 
     @staticmethod
-    def load(path: str | Path) -> TrainingResult:
-        """Read from an HDF5 file; raises :class:`~rssnav.result_file.ResultFileError`."""
+    def load(path: str | Path, agents: Sequence[type] = ()) -> TrainingResult:
+        """Read from an HDF5 file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+        agents : sequence of class
+            Agent classes of your own, and classes of their fields. A file names the class of its
+            agent, but loading imports no module. The agent of a class not given here is an
+            :class:`~rssnav.agent_description.AgentDescription`: its name and parameters.
+
+        Raises
+        ------
+        FileNotFoundError
+            When there is no such file.
+        ResultFileError
+            When the file is damaged, of another format or version, or does not fit the class.
+        """
         from rssnav.result_file import load_result
 
-        return load_result(path)
+        return load_result(path, agents)
 
     def check_same_training(
         self, world: GridWorld, agent: Agent, learning: QLearning, schedule: Schedule
@@ -158,18 +184,18 @@ class TrainingResult:
             ("plan", self.world.plan_sha256, world.plan_sha256),
             ("speed", self.world.speed, world.speed),
             ("radio map", self.world.rss_dbm.tobytes(), world.rss_dbm.tobytes()),
-            ("agent", self.agent, agent),
+            ("agent", same_agent(self.agent, agent), True),
             ("learning", self.learning, learning),
             ("schedule", self.schedule, schedule),
         ):
             if mine != other:
                 raise ValueError(
                     f"the earlier result was trained with another {name}: train from the "
-                    "beginning, or with the settings it was made by"
+                    "beginning, or with the same settings"
                 )
 
     def merged(self, other: TrainingResult) -> TrainingResult:
-        """Realisations of both results, which must share a training and no realisation.
+        """Combine the realisations of two results of the same training.
 
         Raises
         ------
@@ -207,7 +233,7 @@ _PER_RUN = (
     "reached",
     "path_steps",
     "path_length_m",
-    "n_labels",
+    "n_discrete_states",
 )
 
 
@@ -221,7 +247,7 @@ def median_run(result: TrainingResult) -> int | None:
 
 
 def padded(rows: list[NDArray[Any]], fill: int) -> NDArray[Any]:
-    """Stack rows of different lengths, shorter ones filled at their end."""
+    """Stack rows of different lengths; shorter ones are filled at their end."""
     table = np.full((len(rows), max(row.size for row in rows)), fill, dtype=rows[0].dtype)
     for target, row in zip(table, rows, strict=True):
         target[: row.size] = row

@@ -1,8 +1,8 @@
 """Training: many independent realisations of Q-learning on all cores.
 
 Realisation ``k`` of seed ``s`` draws from its own xoshiro256++ stream, seeded by
-``numpy.random.SeedSequence(s, spawn_key=(k,))``, and shares nothing it writes with another. So a
-result does not depend on the number of threads, and any realisation can be repeated alone.
+``numpy.random.SeedSequence(s, spawn_key=(k,))``, and shares no array that it writes with another.
+So a result does not depend on the number of threads, and any realisation can be repeated alone.
 """
 
 from __future__ import annotations
@@ -17,16 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.threads import n_threads
-from rssnav.agents import Agent, QLearning
+from rssnav.agents import Agent
 from rssnav.kernels import common
-from rssnav.learners import LearningProblem
+from rssnav.learning_parameters import QLearning
+from rssnav.learning_rules import LearningProblem
 from rssnav.planning import Path, greedy_path
 from rssnav.results import NO_STEP_LIMIT, Schedule, TrainingResult, padded
 from rssnav.world import GridWorld
 
 Progress = Callable[[int, int], None]
 
-_CHUNK_EPISODES = 64  # between two looks at an interrupt
+_CHUNK_EPISODES = 64  # between two checks for an interrupt
 
 
 class TrainingInterrupted(KeyboardInterrupt):
@@ -47,12 +48,12 @@ class _Realisation:
 
     run_id: int
     episodes: NDArray[np.int32]  # (episodes flown, 3)
-    snapshots: NDArray[np.int32]  # (K, S)
+    snapshots: NDArray[np.int32]  # (K, C) visits of each of the world's C cells
     counters: NDArray[np.int64]
     converged_cpu_s: float
     cpu_s: float
     path: Path
-    n_labels: int
+    n_discrete_states: int
     q: NDArray[np.float64] | None
 
 
@@ -74,42 +75,41 @@ def train(
     only_runs: Sequence[int] | None = None,
     resume: TrainingResult | None = None,
 ) -> TrainingResult:
-    """Train an agent in a world, many times over.
+    """Train an agent in a world, in many independent realisations.
 
     Parameters
     ----------
     world : GridWorld
         Where it flies.
-    agent : RssAgent or LocationAgent
-        What is state, reward and goal.
+    agent : Agent
+        Defines state, reward and goal: an RssAgent, a LocationAgent or one of your own.
     runs : int
         Realisations.
     episodes : int
-        Episodes of each; with ``until_converged`` the most it may take.
+        Episodes of each; with ``until_converged`` the largest number.
     seed : int
         Same seed, same result, for any number of threads.
     learning : QLearning, optional
         Parameters of Algorithm 1.
     until_converged : bool
-        Stop a run once it flies the same path in three consecutive episodes, yet not before
-        ``min_episodes``. One such training serves the figures over the first ``min_episodes``
-        episodes and the convergence figure alike.
+        Stop a run once it flies the same path in three consecutive episodes, but not before
+        ``min_episodes``. One such training serves both the figures over the first ``min_episodes``
+        episodes and the convergence figure.
     min_episodes : int
         Episodes a run flies even when it converges earlier.
     snapshot_episodes : sequence of int
-        Episodes after which visit counts are kept; those that not every run is sure to fly are
-        left out.
+        Episodes after which visit counts are stored; those that a run may not reach are ignored.
     max_total_steps : int
-        A run that has flown as many steps begins no more episodes, or at most 63 more: a budget
-        for parameters with which it might never converge. With it no visit counts are kept.
+        A run that has flown this many steps starts no further episode, or at most 63 more: a limit
+        for parameters with which it might never converge. With it no visit counts are stored.
     keep_q : bool
-        Keep the final Q-tables.
+        Store the final Q-tables.
     threads : int, optional
-        Threads that realisations are spread over; all cores by default.
+        Number of threads; all cores by default.
     progress : callable, optional
         Called as ``progress(done, runs)`` whenever realisations finish.
     only_runs : sequence of int, optional
-        Train only these of the realisations 0..runs-1; each is the same as in the whole.
+        Train only these of the realisations 0..runs-1; each is the same as in the full training.
     resume : TrainingResult, optional
         Finished realisations of the same training, which are not trained again.
 
@@ -133,16 +133,14 @@ def train(
         runs, episodes, seed, until_converged, min_episodes, snapshot_episodes, max_total_steps
     )
     run_ids = _wanted_runs(runs, only_runs)
-    realiser = _Realiser(
-        world, LearningProblem.of(world, agent, learning), schedule, Event(), keep_q
-    )
+    trainer = _Trainer(world, LearningProblem.of(world, agent, learning), schedule, Event(), keep_q)
     if resume is not None:
         resume.check_same_training(world, agent, learning, schedule)
         run_ids = [k for k in run_ids if k not in resume.run_ids]
-    realisations, interrupted = _on_threads(realiser, run_ids, n_threads(threads), progress)
+    realisations, interrupted = _on_threads(trainer, run_ids, n_threads(threads), progress)
     result = resume
     if realisations:
-        trained = _collect(world, agent, learning, schedule, realisations)
+        trained = _collect(trainer, agent, realisations)
         result = trained if resume is None else resume.merged(trained)
     if interrupted or result is None:
         raise TrainingInterrupted(result)
@@ -198,7 +196,7 @@ def generator_states(seed: int, run: int) -> NDArray[np.uint64]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Realiser:
+class _Trainer:
     """Trains one realisation; called on many threads at once."""
 
     world: GridWorld
@@ -208,13 +206,12 @@ class _Realiser:
     keep_q: bool
 
     def __call__(self, run_id: int) -> _Realisation | None:
-        """Train a realisation; None when told to stop on the way."""
-        schedule = self.schedule
+        """Train a realisation; None when it is stopped before the end."""
+        schedule, process = self.schedule, self.problem.process
+        n_cells = self.world.n_states
         learner = self.problem.learner(generator_states(schedule.seed, run_id), schedule.episodes)
         counters = learner.run.counters
-        snapshots = np.zeros(
-            (len(schedule.snapshot_episodes), self.problem.n_states), dtype=np.int32
-        )
+        snapshots = np.zeros((len(schedule.snapshot_episodes), n_cells), dtype=np.int32)
         begin_s = time.thread_time()
         converged_s = 0.0
         while counters[common.EPISODE] < (limit := self._limit(counters)):
@@ -225,9 +222,10 @@ class _Realiser:
             if undecided:
                 converged_s = time.thread_time() - begin_s
             if (flown := int(counters[common.EPISODE])) in schedule.snapshot_episodes:
-                snapshots[schedule.snapshot_episodes.index(flown)] = learner.run.visits
+                visits = process.per_cell(learner.run.visits, n_cells)
+                snapshots[schedule.snapshot_episodes.index(flown)] = visits
         cpu_s = time.thread_time() - begin_s
-        q = learner.cell_values()
+        q = learner.state_values()
         return _Realisation(
             run_id=run_id,
             episodes=learner.run.episodes[: counters[common.EPISODE]].copy(),
@@ -235,18 +233,18 @@ class _Realiser:
             counters=counters,
             converged_cpu_s=converged_s,
             cpu_s=cpu_s,
-            path=greedy_path(self.world, self.problem.process, q),
-            n_labels=learner.n_labels(),
+            path=greedy_path(self.world, process, q),
+            n_discrete_states=learner.n_discrete_states(),
             q=q if self.keep_q else None,
         )
 
     def _next_stop(self, episode: int, limit: int) -> int:
-        """Episode up to which to fly without a look at snapshots and interrupts."""
+        """Episode up to which to fly before the next snapshot or check for an interrupt."""
         snapshots = [k for k in self.schedule.snapshot_episodes if k > episode]
         return min(limit, episode + _CHUNK_EPISODES, *snapshots)
 
     def _limit(self, counters: NDArray[np.int64]) -> int:
-        """Episode at which the run ends, as far as is known by now."""
+        """Episode at which the run ends, by what it has flown so far."""
         if counters[common.TOTAL_STEPS] >= self.schedule.max_total_steps:
             return int(counters[common.EPISODE])
         if self.schedule.until_converged and counters[common.CONVERGED_EPISODE] >= 0:
@@ -255,60 +253,55 @@ class _Realiser:
 
 
 def _on_threads(
-    realiser: _Realiser, run_ids: Sequence[int], threads: int, progress: Progress | None
+    trainer: _Trainer, run_ids: Sequence[int], threads: int, progress: Progress | None
 ) -> tuple[list[_Realisation], bool]:
-    """Train realisations on a pool. Returns the finished ones, and whether Ctrl-C cut it short."""
+    """Train realisations on a pool; returns the finished ones, and whether Ctrl-C stopped it."""
     interrupted = False
-    before = realiser.schedule.runs - len(run_ids)
+    before = trainer.schedule.runs - len(run_ids)
     with ThreadPoolExecutor(threads) as pool:
-        futures = [pool.submit(realiser, run_id) for run_id in run_ids]
+        futures = [pool.submit(trainer, run_id) for run_id in run_ids]
         try:
             for done, future in enumerate(as_completed(futures), start=1):
                 future.result()
                 if progress is not None:
-                    progress(before + done, realiser.schedule.runs)
+                    progress(before + done, trainer.schedule.runs)
         except KeyboardInterrupt:
             interrupted = True
         finally:
-            realiser.stop.set()
+            trainer.stop.set()
             pool.shutdown(cancel_futures=True)
     results = [future.result() for future in futures if not future.cancelled()]
     return [result for result in results if result is not None], interrupted
 
 
 def _collect(
-    world: GridWorld,
-    agent: Agent,
-    learning: QLearning,
-    schedule: Schedule,
-    realisations: Sequence[_Realisation],
+    trainer: _Trainer, agent: Agent, realisations: Sequence[_Realisation]
 ) -> TrainingResult:
-    """Put finished realisations together, in the order of their numbers."""
+    """Combine finished realisations, in the order of their numbers."""
     ordered = sorted(realisations, key=lambda realisation: realisation.run_id)
     counters = np.array([r.counters for r in ordered])
-    visit_counts = np.zeros((len(schedule.snapshot_episodes), world.n_states), dtype=np.int64)
-    for realisation in ordered:
-        visit_counts += realisation.snapshots
+    snapshots = np.array([r.snapshots for r in ordered])  # (R, K, C)
     return TrainingResult(
-        world=world,
+        world=trainer.world,
         agent=agent,
-        learning=learning,
-        schedule=schedule,
+        learning=trainer.problem.learning,
+        schedule=trainer.schedule,
+        cell_of_state=trainer.problem.process.cell_of_state,
         run_ids=np.array([r.run_id for r in ordered], dtype=np.int64),
         steps=_column(ordered, common.STEPS),
         diagonal_steps=_column(ordered, common.DIAGONAL_STEPS),
         truncated=_column(ordered, common.TRUNCATED) == 1,
         episodes_flown=counters[:, common.EPISODE],
-        visit_counts=visit_counts,
+        visit_counts=np.asarray(snapshots.sum(axis=0, dtype=np.int64)),
         converged_episode=counters[:, common.CONVERGED_EPISODE],
         converged_steps=counters[:, common.CONVERGED_STEPS],
         converged_cpu_s=np.array([r.converged_cpu_s for r in ordered]),
         cpu_s=np.array([r.cpu_s for r in ordered]),
-        trajectories=padded([r.path.states for r in ordered], -1),
+        trajectories=padded([r.path.cells for r in ordered], -1),
         reached=np.array([r.path.reached for r in ordered]),
         path_steps=np.array([r.path.steps for r in ordered], dtype=np.int64),
         path_length_m=np.array([r.path.length_m for r in ordered]),
-        n_labels=np.array([r.n_labels for r in ordered], dtype=np.int64),
+        n_discrete_states=np.array([r.n_discrete_states for r in ordered], dtype=np.int64),
         q=np.stack([r.q for r in ordered if r.q is not None]) if ordered[0].q is not None else None,
     )
 

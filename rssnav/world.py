@@ -2,18 +2,19 @@
 
 The UAV flies at constant height from cell centre to cell centre of the radio map's grid. At speed
 ``v`` one step (1 s) moves it ``v`` cells along each axis it moves on, so a diagonal step is
-``sqrt(2)`` times as long as a straight one. A step is impossible when its whole straight segment,
-ends included, touches a wall that is solid at the flying height or does not stay inside the
-outline: passing exactly through the end of a wall is a crash. The intersection tests are those of
-GEOS, whose orientation predicate is robust, so no tolerance enters.
+``sqrt(2)`` times as long as a straight one. A step is impossible when its straight segment, ends
+included, touches a wall that is solid at the flying height or leaves the outline: passing exactly
+through the end of a wall is a crash. The intersection tests are those of GEOS, whose orientation
+predicate is robust, so they need no tolerance.
 
 States are the cells that can be reached from the start by such steps, numbered breadth first from
-the start (state 0): cells a step apart get near numbers, so their rows of a table lie close.
+the start (state 0), so that the table rows of neighbouring cells lie close in memory.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,7 +40,7 @@ _SPEEDS_TRIED = range(1, 9)
 
 
 class WorldError(ValueError):
-    """A plan, a radio map and a speed (or an agent) do not make a world one can learn in."""
+    """A plan, a radio map and a speed (or an agent) make no world to learn in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +58,9 @@ class GridWorld:
     cell : (S, 2) int32
         Indices (i_y, i_x) of the cell in the map, so ``map[tuple(cell.T)]`` is per state.
     distance_m : (S,) float64
-        Horizontal distance to the source [m]. The location-based agent's state is (x, y) and it
-        knows the victim's place in the plan, so its D is the distance in the plan; in both
-        scenarios of the paper D < 2 m then selects the twelve cells with RSS > -21 dBm.
+        Horizontal distance to the transmitter [m]. The location-based agent's state is (x, y) and
+        it knows where the transmitter is in the plan, so its D is horizontal; in both scenarios of
+        the paper D < 2 m then selects the twelve cells with RSS > -21 dBm.
     start_state : int
         State of the start cell.
     speed : int
@@ -69,7 +70,7 @@ class GridWorld:
     shape : (int, int)
         Shape (n_y, n_x) of the radio map.
     source : (float, float, float)
-        Position of the victim's transmitter [m].
+        Position of the transmitter, the plan's ``source`` [m].
     plan_name, plan_sha256 : str
         The plan this world was made from.
     """
@@ -96,32 +97,32 @@ class GridWorld:
         *,
         goal_distance_m: float = GOAL_DISTANCE_M,
     ) -> GridWorld:
-        """Make the world of a plan, its radio map and a speed.
+        """Build the world of a plan, its radio map and a speed.
 
         Parameters
         ----------
         plan : FloorPlan
-            Gives walls, start and source.
+            Gives walls, start and transmitter.
         radio_map : RadioMap
             Gives the cells, their RSS and the flying height; made from the same plan.
         speed : int
             Cells moved along an axis in one step, at least 1.
         goal_distance_m : float
-            The source counts as reachable when a cell nearer to it than this is [m].
+            The transmitter counts as reachable when a cell nearer to it than this is [m].
 
         Raises
         ------
         WorldError
             When the map belongs to another plan, holds NaN or no path at all, or has no cell
             centre at the start; when the speed is not a positive whole number; or when no cell
-            near the source can be reached at this speed.
+            near the transmitter can be reached at this speed.
         """
         _check_speed(speed)
         _check_map(plan, radio_map)
         next_cell = _next_cells(plan, radio_map, speed)
         start_cell = _start_cell(plan, radio_map)
         reached = _reachable_cells(next_cell, start_cell)
-        distance_m = _distance_to_source(plan, radio_map)
+        distance_m = _distance_to_transmitter(plan, radio_map)
         if not np.any(distance_m[reached] < goal_distance_m):
             raise _unreachable(plan, radio_map, speed, goal_distance_m)
         n_y, n_x = radio_map.rss_dbm.shape
@@ -145,6 +146,13 @@ class GridWorld:
         """Number S of states."""
         return self.next_state.shape[0]
 
+    @cached_property
+    def action_mask(self) -> NDArray[np.bool_]:
+        """Possible actions of each state, shape (S, 8); read-only."""
+        mask = self.next_state >= 0
+        mask.flags.writeable = False
+        return mask
+
     def on_grid(self, values: NDArray[np.generic], fill: float = 0.0) -> NDArray[np.float64]:
         """Spread per-state values over the radio map's grid.
 
@@ -153,7 +161,7 @@ class GridWorld:
         values : (..., S)
             A value per state.
         fill : float
-            Value of the cells that are no state.
+            Value of the cells that are not a state.
 
         Returns
         -------
@@ -175,8 +183,8 @@ def _cell_centres(radio_map: RadioMap) -> NDArray[np.float64]:
     return np.column_stack((x.reshape(-1), y.reshape(-1)))
 
 
-def _distance_to_source(plan: FloorPlan, radio_map: RadioMap) -> NDArray[np.float64]:
-    """Horizontal distance of every cell to the source [m], shape (n_y * n_x,)."""
+def _distance_to_transmitter(plan: FloorPlan, radio_map: RadioMap) -> NDArray[np.float64]:
+    """Horizontal distance of every cell to the transmitter [m], shape (n_y * n_x,)."""
     offset = _cell_centres(radio_map) - np.array(plan.source[:2])
     return np.hypot(offset[:, 0], offset[:, 1])
 
@@ -221,7 +229,7 @@ def _renumbered(next_cell: NDArray[np.int64], reached: NDArray[np.int64]) -> NDA
     """Step table in terms of states, given the cell of each state, shape (S, 8)."""
     state_of_cell = np.full(next_cell.shape[0] + 1, -1, dtype=np.int32)
     state_of_cell[reached] = np.arange(reached.size, dtype=np.int32)
-    return state_of_cell[next_cell[reached]]  # the row past the last cell answers index -1
+    return state_of_cell[next_cell[reached]]  # index -1 reads the extra row at the end
 
 
 def _start_cell(plan: FloorPlan, radio_map: RadioMap) -> int:
@@ -247,8 +255,8 @@ def _check_speed(speed: object) -> None:
 
 
 def _check_map(plan: FloorPlan, radio_map: RadioMap) -> None:
-    """Refuse a map that cannot belong to the plan or says nothing."""
-    # a map that nobody has marked with a plan is the caller's word
+    """Refuse a map that cannot belong to the plan or has no reading."""
+    # for a map without a plan's hash the caller is trusted
     if radio_map.plan_sha256 not in ("", plan.sha256):
         raise WorldError(
             f"the radio map was made for another plan than {plan.name!r} (sha256 "
@@ -271,8 +279,8 @@ def _check_map(plan: FloorPlan, radio_map: RadioMap) -> None:
 def _unreachable(
     plan: FloorPlan, radio_map: RadioMap, speed: int, goal_distance_m: float
 ) -> WorldError:
-    """Say that the source cannot be reached, and at which speeds it can."""
-    near = _distance_to_source(plan, radio_map) < goal_distance_m
+    """Build the error for an unreachable transmitter; it lists the speeds that do reach it."""
+    near = _distance_to_transmitter(plan, radio_map) < goal_distance_m
     start = _start_cell(plan, radio_map)
     working = [
         other

@@ -33,7 +33,7 @@ for sigma_db, lightness in ((0.0, -0.4), (0.1, 0.0), (0.5, 0.5)):
             rssnav.ToleranceStates(threshold), -30.0, rssnav.Fluctuation(sigma_db)
         )
         result = rssnav.train(world, agent, runs=RUNS, episodes=500, learning=learning)
-        states.append(result.n_labels.mean())
+        states.append(result.n_discrete_states.mean())
         arrived.append(result.reached.mean())
     colour = shade(AGENT_COLOURS["rss"], lightness)
     left.loglog(threshold_db, states, ".-", color=colour, label=f"σ = {sigma_db:g} dB")

@@ -29,9 +29,9 @@ from rssnav import (
 )
 from rssnav.cli.console import note, one_progress, print_json, print_pairs
 from rssnav.cli.options import Json, Plan, Threads, examples
+from rssnav.discrete_states import StateRule
 from rssnav.kernel_cache import learning_cache
 from rssnav.maps import Progress, require_map_for
-from rssnav.states import StateRule
 
 EPISODES = 1000
 EPISODES_TO_CONVERGE = 20_000
@@ -320,7 +320,7 @@ def _facts(result: TrainingResult) -> dict[str, Any]:
         "runs": result.run_ids.size,
         "episodes": _spread(result.episodes_flown),
         "truncated_episodes": int(result.truncated.sum()),
-        "labels": _spread(result.n_labels),
+        "labels": _spread(result.n_discrete_states),
         "converged_runs": int(converged.sum()),
         "converged_episode": _spread(result.converged_episode[converged]),
         "converged_flight_s": _spread(result.converged_steps[converged]),

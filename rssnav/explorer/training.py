@@ -12,12 +12,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.agents import Agent, LocationAgent, QLearning, RssAgent
+from rssnav.agents import Agent, LocationAgent, RssAgent
+from rssnav.decision_process import DecisionProcess
+from rssnav.discrete_states import ExactStates, ToleranceStates
 from rssnav.explorer.tracing import TracedMap
 from rssnav.kernels import common
-from rssnav.learners import Learner, LearningProblem
+from rssnav.learning_parameters import QLearning
+from rssnav.learning_rules import Learner, LearningProblem
 from rssnav.planning import shortest_path
-from rssnav.states import ExactStates, ToleranceStates
 from rssnav.training import generator_states
 from rssnav.world import GridWorld, WorldError
 
@@ -190,7 +192,7 @@ class LiveTraining:
         for episode in kept_episodes(settings.episodes).tolist():
             if not self._advance(learner, episode):
                 return
-            self.flights.append(_latest_flight(learner, world))
+            self.flights.append(_latest_flight(learner, problem.process, world))
 
     def _advance(self, learner: Learner, episode: int) -> bool:
         """Train up to an episode and store its steps; return False if stopped before."""
@@ -209,10 +211,10 @@ class LiveTraining:
         return True
 
 
-def _latest_flight(learner: Learner, world: GridWorld) -> Flight:
+def _latest_flight(learner: Learner, process: DecisionProcess, world: GridWorld) -> Flight:
     """Flight of a learner's last episode."""
     assert learner.trace is not None
     episode = int(learner.run.counters[common.EPISODE])
     steps, _, truncated = learner.run.episodes[episode - 1]
-    states = np.concatenate(([world.start_state], learner.trace[:steps]))
-    return Flight(episode, world.position[states], not truncated)
+    cells = process.cell_of_state[np.concatenate(([process.start], learner.trace[:steps]))]
+    return Flight(episode, world.position[cells], not truncated)

@@ -10,11 +10,12 @@ from bokeh.models import ColumnDataSource, Range1d, Span
 from bokeh.plotting import figure
 from numpy.typing import NDArray
 
-from rssnav.agents import LocationAgent, QLearning, RssAgent
+from rssnav.agents import LocationAgent, RssAgent
 from rssnav.explorer.map_figure import FONT
 from rssnav.explorer.session import Session, suggested_goal_dbm
 from rssnav.explorer.styles import WIDGETS, pairs, problem
 from rssnav.explorer.training import MAX_EPISODES, LiveTraining, TrainingSettings
+from rssnav.learning_parameters import QLearning
 from rssnav.pictures.style import AGENT_COLOURS, FAINT, INK
 
 MOST_POINTS = 2000

@@ -1,23 +1,30 @@
 """Compiled loops of the learning half: arrays and scalars in, arrays filled, nothing checked.
 
-``xoshiro``
-    The generator each run draws from.
-``readings``
-    What a receiver reads in a cell.
-``common``
-    The NamedTuples the loops share, and Algorithm 1's pieces: epsilon-greedy choice, decay,
-    convergence bookkeeping.
-``tabular``
-    The loop for one Q row per cell, the paper's case.
-``sensed``
-    The loop for states made from RSS readings: exact values that repeat, tolerance states created
-    as readings come, intervals, and readings that fluctuate.
+Learning rules, one loop each:
+
+``q_learning``
+    Algorithm 1 with one row of Q per state, the paper's case.
+``q_learning_from_readings``
+    Algorithm 1 with discrete states made from RSS readings: exact values that repeat, tolerance
+    states created as readings come, intervals, and readings that fluctuate.
 ``temporal_difference``
-    The loop for Q-learning, SARSA and Double Q-learning.
-``searching``
-    Flights that follow a rule without learning: random walk, RSS ascent.
+    Q-learning, SARSA and Double Q-learning.
+
+Searchers, which do not learn from flight to flight:
+
+``searchers``
+    Random walk, RSS ascent.
 ``particle_filter``
-    Flights by a belief about where the source is.
+    Flights by a belief about the transmitter's position.
+
+Shared:
+
+``common``
+    Arguments of the loops, decay, log of episodes, convergence.
+``rss_fluctuation``
+    What a receiver reads in a cell.
+``xoshiro``
+    The random number generator of each run.
 ``compiling``
-    How all of them are compiled, and where the machine code is kept.
+    How the loops are compiled, and where numba caches the machine code.
 """

@@ -1,4 +1,4 @@
-"""What the learning loops share: their arguments, and the bookkeeping between episodes."""
+"""What the learning loops share: their arguments, and the counters between episodes."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ _HASH_FACTOR = np.uint64(0x9E3779B97F4A7C15)
 _1 = np.uint64(1)
 
 Index = int | np.uint64
-"""Unsigned in the fast loop: that spares numba's check for negative indices."""
+"""Unsigned in the fast loop, where numba then omits its check for negative indices."""
 
 
 class Moves(NamedTuple):
-    """Steps of a world: eight actions a state, rows laid end to end."""
+    """Steps of a decision process: eight actions per state, row after row."""
 
     next_state: NDArray[np.int32]  # (S * 8,) -1 where the step would crash
     possible: NDArray[np.uint8]  # (S * 8,) the possible actions of a state first, in action order
@@ -28,7 +28,7 @@ class Moves(NamedTuple):
 
 
 class Parameters(NamedTuple):
-    """Scalars of Algorithm 1 and of its readings."""
+    """Scalars of Algorithm 1 and of its interpretation."""
 
     gamma: float
     epsilon_min: float
@@ -41,7 +41,7 @@ class Parameters(NamedTuple):
 
 
 class Run(NamedTuple):
-    """One realisation while it learns: everything a later call needs to go on."""
+    """One realisation while it learns: all that a later call needs to continue."""
 
     q: NDArray[np.float64]  # (rows * 8,)
     visits: NDArray[np.int32]  # (S,)
@@ -52,7 +52,15 @@ class Run(NamedTuple):
     episodes: NDArray[np.int32]  # (E, 3) of each episode: steps, diagonal steps, 1 if truncated
 
 
-EPISODE, TOTAL_STEPS, SAME_PATHS, PATH_HASH, CONVERGED_EPISODE, CONVERGED_STEPS, N_LABELS = range(7)
+(
+    EPISODE,
+    TOTAL_STEPS,
+    SAME_PATHS,
+    PATH_HASH,
+    CONVERGED_EPISODE,
+    CONVERGED_STEPS,
+    N_DISCRETE_STATES,
+) = range(7)
 N_COUNTERS = 7
 STEPS, DIAGONAL_STEPS, TRUNCATED = range(3)
 _SAME_PATHS_TO_CONVERGE = 3
@@ -60,7 +68,7 @@ _SAME_PATHS_TO_CONVERGE = 3
 
 @jit(inline="always")
 def extended_hash(path_hash: np.uint64, action: Index) -> np.uint64:
-    """Hash of a path one action longer.
+    """Hash of a path with one more action.
 
     Every extension is a bijection of the 64 bits, so paths that differ in one action never share
     a hash; others do with a probability of about 2^-64, and must be equally long to count.
@@ -70,7 +78,7 @@ def extended_hash(path_hash: np.uint64, action: Index) -> np.uint64:
 
 @jit(inline="always")
 def decayed(rate: float, minimum: float, factor: float) -> float:
-    """Epsilon or alpha one decay later (Algorithm 1: while not below its minimum)."""
+    """Epsilon or alpha after one decay (Algorithm 1: while not below its minimum)."""
     return rate * factor if rate >= minimum else rate
 
 
@@ -83,7 +91,7 @@ def close_episode(
     path_hash: np.uint64,
     terminated: bool,
 ) -> bool:
-    """Log an episode and apply the convergence rule; whether the run converged in it.
+    """Log an episode and apply the convergence rule; returns whether the run converged in it.
 
     A run converges with the third episode in a row that reached the goal by the same actions.
     """

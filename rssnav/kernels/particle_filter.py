@@ -1,11 +1,11 @@
-"""A particle filter over the source's place and a log-distance path-loss model.
+"""A particle filter over the transmitter's position and a log-distance path-loss model.
 
-A particle says: the source is at (x, y), and at distance d it reads p - 10 n log10(d / 1 m). The
-weights are those of bootstrap filtering (Gordon, Salmond and Smith 1993) with systematic
-resampling; a share of fresh particles lets it recover from a wrong belief (augmented Monte Carlo
-localisation: Thrun, Burgard and Fox, Probabilistic Robotics, section 8.3). The flight goes to the
-place that a particle drawn by its weight says, along a way of fewest steps, and draws anew from
-time to time (posterior sampling).
+The hypothesis of a particle: the transmitter is at (x, y), and at distance d the reading is
+p - 10 n log10(d / 1 m). The weights are those of bootstrap filtering (Gordon, Salmond and Smith
+1993) with systematic resampling; random new particles let it recover from a wrong belief
+(augmented Monte Carlo localisation: Thrun, Burgard and Fox, Probabilistic Robotics, section 8.3).
+The flight goes to the position of a particle drawn by weight, by the fewest steps, and draws
+another from time to time (posterior sampling).
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from numpy.typing import NDArray
 
 from rssnav.kernels.common import Moves
 from rssnav.kernels.compiling import jit
-from rssnav.kernels.searching import Flight, Receiver, is_over, read, spend_second
+from rssnav.kernels.searchers import Flight, Receiver, is_over, read, spend_second
 from rssnav.kernels.xoshiro import draw, gaussian, unit_from_high_bits
 
 X, Y, POWER, EXPONENT = range(4)
 
 
 class Model(NamedTuple):
-    """What the filter believes before any reading, and how it weighs readings."""
+    """Prior and likelihood of the filter."""
 
-    low: NDArray[np.float64]  # (4,) particles are fresh between ``low`` and ``high``:
+    low: NDArray[np.float64]  # (4,) new particles lie between ``low`` and ``high``:
     high: NDArray[np.float64]  # (4,) x, y [m], power at 1 m [dBm], exponent
     jitter: NDArray[np.float64]  # (4,) standard deviations added when resampled
     sigma_db: float  # of readings about the model
-    fresh_share: float  # of the particles, when resampled
-    found_m: float  # a reading that does not find the source says it is not nearer than this
-    steps_to_draw: int  # after which a place is drawn anew
+    fresh_share: float  # of new particles, when resampled
+    found_m: float  # a reading that does not find the transmitter means it is not nearer than this
+    steps_to_draw: int  # after which another position is drawn
 
 
 class Belief(NamedTuple):
@@ -41,15 +41,15 @@ class Belief(NamedTuple):
 
     particles: NDArray[np.float64]  # (N, 4)
     weights: NDArray[np.float64]  # (N,) their sum is 1
-    resampled: NDArray[np.float64]  # (N, 4) room for the next particles
+    resampled: NDArray[np.float64]  # (N, 4) buffer for the next particles
 
 
 class Chart(NamedTuple):
-    """What the filter knows of the plan: where its states are, and the steps to a place."""
+    """What the filter knows of the plan: the positions of states, and the steps to a target."""
 
     position: NDArray[np.float64]  # (S, 2) [m]
-    hops: NDArray[np.int32]  # (S,) steps to the place it flies to
-    queue: NDArray[np.int32]  # (S,) room for the search
+    hops: NDArray[np.int32]  # (S,) steps to the target
+    queue: NDArray[np.int32]  # (S,) buffer for the search
 
 
 @jit(inline="always")
@@ -58,24 +58,24 @@ def _unit(generator: NDArray[np.uint64]) -> float:
 
 
 @jit()
-def _make_fresh(particle: NDArray[np.float64], model: Model, generator: NDArray[np.uint64]) -> None:
+def _draw_new(particle: NDArray[np.float64], model: Model, generator: NDArray[np.uint64]) -> None:
     for k in range(4):
         particle[k] = model.low[k] + (model.high[k] - model.low[k]) * _unit(generator)
 
 
 @jit()
 def _begin(belief: Belief, model: Model, generator: NDArray[np.uint64]) -> None:
-    """Spread fresh particles, all of the same weight."""
+    """Draw new particles, all of the same weight."""
     for particle in belief.particles:
-        _make_fresh(particle, model, generator)
+        _draw_new(particle, model, generator)
     belief.weights[:] = 1.0 / belief.weights.size
 
 
 @jit()
 def weigh(belief: Belief, model: Model, x: float, y: float, reading_dbm: float) -> bool:
-    """Weigh the particles by a reading at (x, y) that did not find the source.
+    """Weigh the particles by a reading at (x, y) that did not find the transmitter.
 
-    Returns whether any particle can be true.
+    Returns whether any particle keeps a positive weight.
     """
     weights = belief.weights
     for k in range(weights.size):
@@ -99,7 +99,7 @@ def weigh(belief: Belief, model: Model, x: float, y: float, reading_dbm: float) 
 
 @jit()
 def _concentration(weights: NDArray[np.float64]) -> float:
-    """Number of particles over the effective number that the weights amount to."""
+    """Number of particles divided by their effective number."""
     squares = 0.0
     for weight in weights:
         squares += weight * weight
@@ -108,7 +108,7 @@ def _concentration(weights: NDArray[np.float64]) -> float:
 
 @jit()
 def resample(belief: Belief, model: Model, generator: NDArray[np.uint64]) -> None:
-    """Draw particles by weight (systematic resampling), jitter them, and add fresh ones."""
+    """Draw particles by weight (systematic resampling), jitter them, and add new ones."""
     count = belief.weights.size
     offset, reached, k = _unit(generator), belief.weights[0], 0
     for drawn in range(count):
@@ -117,7 +117,7 @@ def resample(belief: Belief, model: Model, generator: NDArray[np.uint64]) -> Non
             reached += belief.weights[k]
         particle = belief.resampled[drawn]
         if _unit(generator) < model.fresh_share:
-            _make_fresh(particle, model, generator)
+            _draw_new(particle, model, generator)
             continue
         for c in range(4):
             shift = model.jitter[c] * gaussian(draw(generator), draw(generator))
@@ -130,11 +130,11 @@ def resample(belief: Belief, model: Model, generator: NDArray[np.uint64]) -> Non
 
 
 @jit()
-def _drawn_place(belief: Belief, chart: Chart, generator: NDArray[np.uint64]) -> int:
-    """State nearest to the place of a particle drawn by weight."""
-    target, k = _unit(generator), 0
+def _draw_target(belief: Belief, chart: Chart, generator: NDArray[np.uint64]) -> int:
+    """State nearest to the position of a particle drawn by weight."""
+    level, k = _unit(generator), 0
     reached = belief.weights[0]
-    while reached < target and k < belief.weights.size - 1:
+    while reached < level and k < belief.weights.size - 1:
         k += 1
         reached += belief.weights[k]
     nearest, least = 0, np.inf
@@ -148,10 +148,10 @@ def _drawn_place(belief: Belief, chart: Chart, generator: NDArray[np.uint64]) ->
 
 
 @jit()
-def count_hops(moves: Moves, chart: Chart, place: int) -> None:
-    """Fewest steps from every state to a place, breadth first; a step can be flown both ways."""
+def count_hops(moves: Moves, chart: Chart, target: int) -> None:
+    """Fewest steps from every state to a target, breadth first; steps are symmetric."""
     chart.hops[:] = -1
-    chart.hops[place], chart.queue[0] = 0, place
+    chart.hops[target], chart.queue[0] = 0, target
     head, tail = 0, 1
     while head < tail:
         state = chart.queue[head]
@@ -166,7 +166,7 @@ def count_hops(moves: Moves, chart: Chart, place: int) -> None:
 
 @jit(inline="always")
 def _nearer(moves: Moves, hops: NDArray[np.int32], state: int) -> int:
-    """State a step nearer to the place, the same state at the place."""
+    """State one step nearer to the target; at the target the same state."""
     for a in range(8):
         there = moves.next_state[8 * state + a]
         if there >= 0 and hops[there] < hops[state]:
@@ -178,7 +178,10 @@ def _nearer(moves: Moves, hops: NDArray[np.int32], state: int) -> int:
 def track(
     moves: Moves, receiver: Receiver, flight: Flight, model: Model, belief: Belief, chart: Chart
 ) -> bool:
-    """Fly by the belief until a reading finds the source or the time is up; which of them."""
+    """Fly by the belief until a reading finds the transmitter or the time is up.
+
+    Returns whether a reading found it.
+    """
     generator, state = flight.generator, int(flight.states[0])
     _begin(belief, model, generator)
     since_drawn = model.steps_to_draw
@@ -190,7 +193,7 @@ def track(
         if _concentration(belief.weights) > 2.0:
             resample(belief, model, generator)
         if since_drawn >= model.steps_to_draw or chart.hops[state] == 0:
-            count_hops(moves, chart, _drawn_place(belief, chart, generator))
+            count_hops(moves, chart, _draw_target(belief, chart, generator))
             since_drawn = 0
         state = _nearer(moves, chart.hops, state)
         since_drawn += 1

@@ -1,11 +1,11 @@
-"""One loop for Q-learning, SARSA and Double Q-learning, with one row of Q per cell.
+"""One loop for Q-learning, SARSA and Double Q-learning, with one row of Q per state.
 
 The three differ in the value of the state arrived at: the maximum of its row (Q-learning), the
 value of the action taken there next (SARSA; Sutton and Barto, Reinforcement Learning, 2nd ed.,
 section 6.4), or one table's value of the action that is best in the other (Double Q-learning; van
-Hasselt 2010). With the first it is :mod:`rssnav.kernels.tabular` bit for bit, only slower.
+Hasselt 2010). With the first it equals :mod:`rssnav.kernels.q_learning` bit for bit, but is slower.
 
-Double Q-learning keeps its two tables end to end in ``run.q`` and acts by their sum.
+Double Q-learning keeps its two tables one after the other in ``run.q`` and acts by their sum.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def _score(q: NDArray[np.float64], entry: int, rule: int) -> float:
 
 @jit(inline="always")
 def _greedy(q: NDArray[np.float64], row: int, rule: int, ties: NDArray[np.uint64] | None) -> int:
-    """First or, with a generator for ties, any of the best actions; it may be blocked."""
+    """First of the best actions or, with a generator for ties, any; it may be blocked."""
     best, attain, first = -np.inf, np.uint64(0), 0
     for a in range(8):
         value = _score(q, row + a, rule)
@@ -92,7 +92,7 @@ def _fly_episode(
     ties: NDArray[np.uint64] | None,
     trace: NDArray[np.int32] | None,
 ) -> tuple[int, int, np.uint64, bool]:
-    """Fly and learn from the start to the goal or the cap.
+    """Fly and learn from the start to the goal or to ``max_steps``.
 
     Returns (steps, diagonal steps, path hash, terminated).
     """
@@ -110,7 +110,7 @@ def _fly_episode(
         entry = 8 * state + action
         arrived = int(moves.next_state[entry])
         terminated = moves.terminal[arrived]
-        learning, other = 0, 0  # where the table that learns, and the one it asks, begin
+        learning, other = 0, 0  # offsets of the table that learns and of the one that evaluates
         if rule == DOUBLE_Q:
             learning = half * int(draw(run.generator) >> np.uint64(63))
             other = half - learning
@@ -143,9 +143,10 @@ def learn(
     until_episode: int,
     trace: NDArray[np.int32] | None = None,
 ) -> None:
-    """Go on learning to ``until_episode``, or to the episode in which the run converges.
+    """Continue learning up to ``until_episode``, or to the episode in which the run converges.
 
-    ``trace`` (max_steps,) takes the states an episode arrives at, each episode over the last.
+    ``trace`` (max_steps,) receives the states that an episode arrives at; each episode overwrites
+    the one before.
     """
     rates, converged = run.rates, False
     while run.counters[EPISODE] < until_episode and not converged:

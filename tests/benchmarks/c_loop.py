@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.learners import LearningProblem, TabularLearner
+from rssnav.learning_rules import LearningProblem, TabularLearner
 
 SOURCE = Path(__file__).with_name("q_loop.c")
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")

@@ -19,7 +19,7 @@ from raytrace.threads import n_threads
 from rssnav import LocationAgent, QLearning, RssAgent, train
 from rssnav.agents import Agent
 from rssnav.kernels import common
-from rssnav.learners import LearningProblem, TabularLearner
+from rssnav.learning_rules import LearningProblem, TabularLearner
 from rssnav.training import generator_states
 from rssnav.world import ACTIONS, GridWorld
 

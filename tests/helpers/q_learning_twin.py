@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rssnav.agents import DecisionProcess, QLearning
+from rssnav.decision_process import DecisionProcess
+from rssnav.learning_parameters import QLearning
 
 MASK = (1 << 64) - 1
 
@@ -50,12 +51,12 @@ def low_index(bits: int, count: int) -> int:
 
 @dataclass
 class Twin:
-    """One realisation. ``label(cell, reading)`` names a state; readings come from ``read``."""
+    """One realisation: discrete states from ``state_of(cell, reading)``, readings from ``read``."""
 
     process: DecisionProcess
     learning: QLearning
     generators: np.ndarray
-    label: Callable[[int, float], int] = lambda cell, reading: cell
+    state_of: Callable[[int, float], int] = lambda cell, reading: cell
     read: Callable[[int], float] | None = None
     terminal_dbm: float = -21.0
     q: dict[tuple[int, int], float] = field(default_factory=dict)
@@ -69,8 +70,8 @@ class Twin:
         self.alpha = self.learning.alpha_max
         self.visits = np.zeros(self.process.terminal.size, dtype=int)
 
-    def value(self, label: int, action: int) -> float:
-        return self.q.get((label, action), self.learning.initial_q)
+    def value(self, state: int, action: int) -> float:
+        return self.q.get((state, action), self.learning.initial_q)
 
     def possible(self, cell: int) -> list[int]:
         return [a for a in range(8) if self.process.next_state[cell, a] >= 0]
@@ -87,9 +88,9 @@ class Twin:
             if self.alpha >= self.learning.alpha_min:
                 self.alpha *= factor
 
-    def choose(self, cell: int, label: int) -> int:
-        best = max(self.value(label, a) for a in self.counted(cell))
-        ties = [a for a in self.counted(cell) if self.value(label, a) == best]
+    def choose(self, cell: int, state: int) -> int:
+        best = max(self.value(state, a) for a in self.counted(cell))
+        ties = [a for a in self.counted(cell) if self.value(state, a) == best]
         action = ties[0]
         if self.learning.tie_break == "random":
             action = ties[low_index(self.tie_generator.bits(), len(ties))]
@@ -108,11 +109,11 @@ class Twin:
         self.decay("episode")
         cell, path, terminated = self.process.start, [], False
         reading = self.reading(cell)
-        label = self.label(cell, reading)
+        state = self.state_of(cell, reading)
         self.visits[cell] += 1
         while not terminated and len(path) < self.learning.max_steps:
             self.decay("step")
-            action = self.choose(cell, label)
+            action = self.choose(cell, state)
             arrived = int(self.process.next_state[cell, action])
             next_reading = self.reading(arrived)
             if self.read is None:
@@ -124,16 +125,16 @@ class Twin:
                 if terminated:
                     kept = 0.0 if self.learning.goal_reward_is == "instead" else reward
                     reward = kept + self.learning.goal_reward
-            next_label = self.label(arrived, next_reading)
+            next_state = self.state_of(arrived, next_reading)
             future = 0.0
             if not terminated:
-                future = max(self.value(next_label, a) for a in self.counted(arrived))
+                future = max(self.value(next_state, a) for a in self.counted(arrived))
             target = reward + self.learning.gamma * future
-            old = self.value(label, action)
-            self.q[label, action] = (1.0 - self.alpha) * old + self.alpha * target
+            old = self.value(state, action)
+            self.q[state, action] = (1.0 - self.alpha) * old + self.alpha * target
             path.append(action)
             self.visits[arrived] += 1
-            cell, label, reading = arrived, next_label, next_reading
+            cell, state, reading = arrived, next_state, next_reading
         self.paths.append(path)
         self.reached.append(terminated)
 
@@ -147,7 +148,7 @@ class Twin:
 
 
 class ToleranceTwin:
-    """Tolerance states as a plain list of the readings that founded them."""
+    """Tolerance states as a plain list of the readings that created them."""
 
     def __init__(self, threshold_db: float):
         self.threshold_db = threshold_db

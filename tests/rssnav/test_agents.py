@@ -36,7 +36,7 @@ def test_the_goal_reward_is_added_or_stands_instead(room_world, agent):
     added = agent.decision_process(room_world, QLearning())
     instead = agent.decision_process(room_world, QLearning(goal_reward_is="instead"))
     without = agent.decision_process(room_world, QLearning(goal_reward=0.0))
-    arrives = (added.next_state >= 0) & added.terminal[added.next_state]
+    arrives = added.action_mask & added.terminal[added.next_state]
     assert arrives.any()
     assert np.array_equal(added.reward[arrives], without.reward[arrives] + 1000.0)
     assert np.all(instead.reward[arrives] == 1000.0)

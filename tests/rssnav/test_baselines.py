@@ -9,11 +9,12 @@ from scipy.sparse.csgraph import shortest_path as all_distances
 from small_worlds import SmallPlan, room_plan, world_of
 
 from rssnav import Fluctuation
-from rssnav.agents import QLearning, RssAgent
+from rssnav.agents import RssAgent
 from rssnav.baselines import ParticleFilter, RandomWalk, RssAscent, search
 from rssnav.kernels import particle_filter
 from rssnav.kernels.particle_filter import Belief, Chart, Model
-from rssnav.learners import moves_of
+from rssnav.learning_parameters import QLearning
+from rssnav.learning_rules import moves_of
 from rssnav.training import generator_states
 
 SEARCHERS = pytest.mark.parametrize(
@@ -62,7 +63,7 @@ def test_a_random_walk_takes_as_long_as_its_equations_say():
     """Mean first passage times m = 1 + P m, m = 0 at the goal, in a corridor."""
     world = world_of(SmallPlan((7.0, 1.0), (0.3, 0.5, 1.5), (5.5, 0.5)))
     terminal = world.rss_dbm > -21.0
-    possible = world.next_state >= 0
+    possible = world.action_mask
     passing = np.zeros((world.n_states, world.n_states))
     for state in np.flatnonzero(~terminal):
         for there in world.next_state[state][possible[state]]:
@@ -158,7 +159,7 @@ def test_systematic_resampling_keeps_each_particle_in_proportion(model):
 def test_hops_are_shortest_distances(room_world):
     process = RssAgent().decision_process(room_world, QLearning())
     size = room_world.n_states
-    state, action = np.nonzero(room_world.next_state >= 0)
+    state, action = np.nonzero(room_world.action_mask)
     graph = csr_array(
         (np.ones(state.size), (state, room_world.next_state[state, action])), shape=(size, size)
     )

@@ -7,7 +7,7 @@ import pytest
 
 from rssnav import Fluctuation, LocationAgent, QLearning, RssAgent, ToleranceStates
 from rssnav.kernels import common
-from rssnav.learners import LearningProblem
+from rssnav.learning_rules import LearningProblem
 from rssnav.training import generator_states
 
 EPISODES = 30

@@ -65,7 +65,9 @@ def test_a_file_is_readable_without_this_project(result, tmp_path):
     with h5py.File(tmp_path / "result.h5") as file:
         assert file.attrs["format"] == "rssnav-training"
         assert file["learning"].attrs["gamma"] == 0.98
-        assert file["agent"].attrs["states"] == "exact"
+        assert file.attrs["agent"] == "rss"
+        assert file["agent"].attrs["terminal_dbm"] == -21.0
+        assert file["agent/states"].attrs["class"] == "rssnav:ExactStates"
         assert file["steps"].shape == (2, 5)
         assert file["steps"].attrs["long_name"]
         assert file["path_length_m"].attrs["units"] == "m"

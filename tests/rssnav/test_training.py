@@ -26,7 +26,7 @@ PER_RUN = (
     "reached",
     "path_steps",
     "path_length_m",
-    "n_labels",
+    "n_discrete_states",
 )
 
 
@@ -159,7 +159,7 @@ def test_tolerance_states_get_along_with_fluctuation(room_world):
     agent = RssAgent(ToleranceStates(0.3), fluctuation=Fluctuation(0.01))
     result = train(room_world, agent, runs=3, episodes=2000, learning=LEARNING)
     assert result.reached.all()
-    assert np.all(result.n_labels < 2 * room_world.n_states)
+    assert np.all(result.n_discrete_states < 2 * room_world.n_states)
 
 
 def test_progress_counts_the_runs(room_world):

@@ -13,9 +13,9 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import Any
 
+from rssnav.agent_description import describe, flat_parameters
 from rssnav.experiments.paper.data import PaperData
 from rssnav.experiments.tables import Column, Table
-from rssnav.result_file import agent_parameters
 
 _PACKAGES = (
     "rssnav",
@@ -111,7 +111,7 @@ def parameters(data: PaperData) -> Table:
         "schedule": dataclasses.asdict(result.schedule),
     }
     for each in data.results.values():
-        groups[f"{each.agent.name} agent"] = agent_parameters(each.agent)
+        groups[f"{each.agent.name} agent"] = flat_parameters(describe(each.agent))
     rows = [(group, name, str(v)) for group, values in groups.items() for name, v in values.items()]
     return Table(
         "parameters",

@@ -36,7 +36,7 @@ def shortest_flights(
     list of (n + 1,) int64
         States of each flight.
     """
-    state, action = np.nonzero(world.next_state >= 0)
+    state, action = np.nonzero(world.action_mask)
     following = world.next_state[state, action]
     length_m = world.step_length_m[action]
     moves = csr_array((length_m, (state, following)), shape=(world.n_states,) * 2)

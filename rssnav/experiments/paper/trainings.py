@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from rssnav.agents import Agent, QLearning
+from rssnav.agents import Agent
 from rssnav.experiments.paper.data import (
     AGENTS,
     SHOWN_EPISODES,
@@ -14,6 +14,7 @@ from rssnav.experiments.paper.data import (
     Configuration,
 )
 from rssnav.experiments.progress import Notice
+from rssnav.learning_parameters import QLearning
 from rssnav.result_file import ResultFileError
 from rssnav.results import Schedule, TrainingResult
 from rssnav.training import TrainingInterrupted, train

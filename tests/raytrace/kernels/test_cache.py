@@ -14,7 +14,7 @@ from raytrace.kernels.beams import grow_tree
 from raytrace.kernels.cache import KernelCache, cache_folder, sources_digest
 from raytrace.kernels.compiling import jit as tracer_jit
 from rssnav.kernels.compiling import jit as loop_jit
-from rssnav.kernels.tabular import learn
+from rssnav.kernels.q_learning import learn
 
 
 @pytest.fixture

@@ -15,14 +15,14 @@ from rssnav import (
     RssAgent,
     ToleranceStates,
 )
+from rssnav.discrete_states import Fluctuation, GoalRule, reading_states
 from rssnav.kernels import common, xoshiro
-from rssnav.learners import LearningProblem, SensedLearner, TabularLearner
-from rssnav.states import Fluctuation, GoalRule, sensed_states
+from rssnav.learning_rules import LearningProblem, ReadingLearner, TabularLearner
 from rssnav.training import generator_states
 
 # A decay that takes epsilon and alpha to their minimum within the test, and a cap that truncates.
 QUICK = QLearning(eta=2e-2, max_steps=60, epsilon_min=0.1)
-READINGS_OF_THE_PAPER = {
+INTERPRETATIONS = {
     "defaults": QUICK,
     "maximum over all": replace(QUICK, maximum_over="all"),
     "random ties": replace(QUICK, tie_break="random"),
@@ -75,7 +75,7 @@ def test_generator_gives_the_published_first_values():
     ]
 
 
-@pytest.mark.parametrize("learning", READINGS_OF_THE_PAPER.values(), ids=READINGS_OF_THE_PAPER)
+@pytest.mark.parametrize("learning", INTERPRETATIONS.values(), ids=INTERPRETATIONS)
 @pytest.mark.parametrize("agent", [RssAgent(), LocationAgent()], ids=["rss", "location"])
 def test_tabular_loop_equals_its_twin(room_world, agent, learning):
     problem = LearningProblem.of(room_world, agent, learning)
@@ -85,32 +85,32 @@ def test_tabular_loop_equals_its_twin(room_world, agent, learning):
     assert_same(learner, flown(Twin(problem.process, learning, generators), 40))
 
 
-@pytest.mark.parametrize("learning", READINGS_OF_THE_PAPER.values(), ids=READINGS_OF_THE_PAPER)
-def test_sensed_loop_equals_the_tabular_one_where_each_cell_has_a_label(room_world, learning):
+@pytest.mark.parametrize("learning", INTERPRETATIONS.values(), ids=INTERPRETATIONS)
+def test_reading_loop_equals_the_tabular_one_with_a_discrete_state_per_cell(room_world, learning):
     problem = LearningProblem.of(room_world, RssAgent(), learning)
     goal = GoalRule(-21.0, learning.goal_reward, learning.goal_reward_is == "instead")
-    states = sensed_states(ExactStates(), Fluctuation(), room_world.rss_dbm, goal)
+    states = reading_states(ExactStates(), Fluctuation(), room_world.rss_dbm, goal)
     generators = generator_states(8, 0)
-    sensed = advance(SensedLearner(problem, states, generators, 40), 40)
+    by_reading = advance(ReadingLearner(problem, states, generators, 40), 40)
     tabular = advance(TabularLearner(problem, generators, 40), 40)
-    assert np.array_equal(sensed.run.episodes, tabular.run.episodes)
-    assert np.array_equal(sensed.run.visits, tabular.run.visits)
+    assert np.array_equal(by_reading.run.episodes, tabular.run.episodes)
+    assert np.array_equal(by_reading.run.visits, tabular.run.visits)
     leaves = ~problem.process.terminal  # rows of terminal states are never used
-    assert np.array_equal(sensed.cell_values()[leaves], tabular.cell_values()[leaves])
+    assert np.array_equal(by_reading.state_values()[leaves], tabular.state_values()[leaves])
 
 
-@pytest.mark.parametrize("learning", READINGS_OF_THE_PAPER.values(), ids=READINGS_OF_THE_PAPER)
+@pytest.mark.parametrize("learning", INTERPRETATIONS.values(), ids=INTERPRETATIONS)
 @pytest.mark.parametrize("threshold_db", [0.3, 2.0])
 def test_tolerance_states_equal_their_twin(room_world, learning, threshold_db):
     agent = RssAgent(ToleranceStates(threshold_db))
     problem = LearningProblem.of(room_world, agent, learning)
     generators = generator_states(9, 0)
     learner = advance(problem.learner(generators, 40), 40)
-    label = ToleranceTwin(threshold_db)
+    state_of = ToleranceTwin(threshold_db)
     read = room_world.rss_dbm.tolist().__getitem__
-    twin = Twin(problem.process, learning, generators, label=label, read=read)
+    twin = Twin(problem.process, learning, generators, state_of=state_of, read=read)
     assert_same(learner, flown(twin, 40))
-    assert learner.n_labels() == len(label.known)
+    assert learner.n_discrete_states() == len(state_of.known)
 
 
 def test_interval_states_equal_their_twin(room_world):
@@ -119,11 +119,11 @@ def test_interval_states_equal_their_twin(room_world):
     generators = generator_states(10, 0)
     learner = advance(problem.learner(generators, 40), 40)
 
-    def label(cell, reading):
+    def state_of(cell, reading):
         return sum(reading >= edge for edge in edges)
 
     read = room_world.rss_dbm.tolist().__getitem__
-    twin = Twin(problem.process, QUICK, generators, label=label, read=read)
+    twin = Twin(problem.process, QUICK, generators, state_of=state_of, read=read)
     assert_same(learner, flown(twin, 40))
 
 
@@ -133,13 +133,13 @@ def test_cells_that_read_the_same_share_a_row(room):
     problem = LearningProblem.of(world, RssAgent(), QUICK)
     generators = generator_states(11, 0)
     learner = advance(problem.learner(generators, 40), 40)
-    assert learner.n_labels() == np.unique(rss_dbm).size < world.n_states
-    labels = ExactStates().labels(rss_dbm).tolist()
+    assert learner.n_discrete_states() == np.unique(rss_dbm).size < world.n_states
+    states = ExactStates().discrete_states(rss_dbm).tolist()
     twin = Twin(
         problem.process,
         QUICK,
         generators,
-        label=lambda cell, reading: labels[cell],
+        state_of=lambda cell, reading: states[cell],
         read=rss_dbm.tolist().__getitem__,
     )
     assert_same(learner, flown(twin, 40))
@@ -161,9 +161,9 @@ def test_a_step_into_the_goal_is_worth_its_reward_alone(room):
     process = LocationAgent().decision_process(world, learning)
     problem = LearningProblem.of(world, LocationAgent(), learning)
     learner = advance(problem.learner(generator_states(0, 0), 200), 200)
-    goes_in = (process.next_state >= 0) & process.terminal[process.next_state]
+    goes_in = process.action_mask & process.terminal[process.next_state]
     goes_in[process.terminal] = False
-    q = learner.cell_values()
+    q = learner.state_values()
     tried = goes_in & (q != learning.initial_q)
     assert tried.any()
     assert np.array_equal(q[tried], process.reward[tried])

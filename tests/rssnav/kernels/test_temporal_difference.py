@@ -9,7 +9,7 @@ from small_worlds import SmallPlan, world_of
 
 from rssnav import IntervalStates, LocationAgent, QLearning, RssAgent, train, value_iteration
 from rssnav.kernels import common, temporal_difference
-from rssnav.learners import LearningProblem, TabularLearner, TemporalDifferenceLearner
+from rssnav.learning_rules import LearningProblem, TabularLearner, TemporalDifferenceLearner
 from rssnav.training import generator_states
 
 QUICK = QLearning(eta=2e-2, max_steps=60, epsilon_min=0.1)
@@ -125,7 +125,7 @@ def corridor_world():
 
 def random_policy_values(process, gamma):
     """Q of the policy that picks any possible action, by solving its linear equations."""
-    possible = process.next_state >= 0
+    possible = process.action_mask
     chance = np.where(possible, 1.0, 0.0) / possible.sum(axis=1, keepdims=True)
     chance[process.terminal] = 0.0
     states = np.arange(process.terminal.size)
@@ -142,7 +142,7 @@ def test_sarsa_learns_the_values_of_the_policy_it_flies():
     world, learning = corridor_world(), replace(EXPLORING, rule="sarsa")
     process = RssAgent().decision_process(world, learning)
     result = train(world, RssAgent(), runs=1, episodes=40_000, learning=learning, keep_q=True)
-    leaves = (process.next_state >= 0) & ~process.terminal[:, None]
+    leaves = process.action_mask & ~process.terminal[:, None]
     expected = random_policy_values(process, learning.gamma)
     assert np.allclose(result.q[0][leaves], expected[leaves], rtol=0.02)
 
@@ -151,7 +151,7 @@ def test_double_q_learns_the_optimal_values():
     world, learning = corridor_world(), replace(EXPLORING, rule="double_q")
     process = RssAgent().decision_process(world, learning)
     result = train(world, RssAgent(), runs=1, episodes=5_000, learning=learning, keep_q=True)
-    leaves = (process.next_state >= 0) & ~process.terminal[:, None]
+    leaves = process.action_mask & ~process.terminal[:, None]
     expected = value_iteration(process, learning.gamma).q
     assert np.allclose(result.q[0][leaves], expected[leaves], rtol=1e-9)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rssnav.agents import QLearning
 from rssnav.experiments.paper.data import AGENTS
 from rssnav.experiments.paper.scenarios import PLANS, SPEEDS
 from rssnav.experiments.studies.comparison.methods import (
@@ -16,6 +15,7 @@ from rssnav.experiments.studies.comparison.methods import (
 )
 from rssnav.experiments.studies.study import Conditions, Study
 from rssnav.experiments.tables import Cell, Column, Table, mean_cell, sd_cell
+from rssnav.learning_parameters import QLearning
 from rssnav.planning import shortest_path
 
 

@@ -14,11 +14,14 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.agents import Agent, DecisionProcess, QLearning
+from rssnav.agents import Agent
 from rssnav.baselines import ParticleFilter, RandomWalk, RssAscent, Searcher, search
+from rssnav.decision_process import DecisionProcess
+from rssnav.discrete_states import Fluctuation
 from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS, AgentName, flights
 from rssnav.experiments.paper.trainings import EPISODE_LIMIT
 from rssnav.experiments.studies.study import Conditions
+from rssnav.learning_parameters import QLearning
 from rssnav.planning import (
     Path as Flight,
 )
@@ -29,7 +32,6 @@ from rssnav.planning import (
     value_iteration,
 )
 from rssnav.results import NO_STEP_LIMIT, TrainingResult
-from rssnav.states import Fluctuation
 from rssnav.training import train
 from rssnav.world import GridWorld
 

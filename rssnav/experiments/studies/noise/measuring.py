@@ -10,9 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.agents import RssAgent
+from rssnav.discrete_states import (
+    ExactStates,
+    Fluctuation,
+    IntervalStates,
+    StateRule,
+    ToleranceStates,
+)
 from rssnav.experiments.studies.study import Conditions
 from rssnav.results import TrainingResult
-from rssnav.states import ExactStates, Fluctuation, IntervalStates, StateRule, ToleranceStates
 from rssnav.training import train
 from rssnav.world import GridWorld
 
@@ -132,7 +138,7 @@ def measure(setting: Setting, conditions: Conditions) -> list[Outcome]:
         setting=setting,
         converged=result.converged_episode >= 0,
         arrived=result.reached,
-        n_states=result.n_labels,
+        n_states=result.n_discrete_states,
         success=_mean_of(~result.truncated, last),
         steps=_mean_of(result.steps, last),
     )

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.agents import QLearning
 from rssnav.experiments.paper.data import AGENTS, CONFIGURATIONS, SHOWN_EPISODES, Configuration
 from rssnav.experiments.paper.trainings import EPISODE_LIMIT
 from rssnav.experiments.studies.study import Conditions
+from rssnav.learning_parameters import QLearning
 from rssnav.results import TrainingResult
 from rssnav.training import train
 from rssnav.world import GridWorld, WorldError

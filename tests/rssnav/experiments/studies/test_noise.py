@@ -52,7 +52,7 @@ def test_measures_are_those_of_the_last_episodes(room_world, conditions, monkeyp
     )
     assert np.array_equal(outcome.steps, result.steps[:, 50:].mean(axis=1))
     assert np.array_equal(outcome.success, 1.0 - result.truncated[:, 50:].mean(axis=1))
-    assert np.array_equal(outcome.n_states, result.n_labels)
+    assert np.array_equal(outcome.n_states, result.n_discrete_states)
 
 
 def test_last_episodes_of_a_short_run_are_all_it_has(room_world, conditions, monkeypatch):

@@ -1,8 +1,8 @@
-"""Q-learning with one Q row per cell: the loop the paper's twelve configurations run in.
+"""Q-learning with one row of Q per state: the loop of the paper's twelve configurations.
 
-The maximum of every row and the first action that attains it are kept beside the table and
-renewed when a step changes the row, which seldom needs a scan. The row of the state arrived at is
-never the row updated (a step always leaves its cell), so this is Algorithm 1 to the letter.
+The maximum of every row and the first action that attains it are stored beside the table and
+updated when a step changes the row, which seldom needs a scan. The row of the state arrived at is
+never the row updated (a step always leaves its cell), so this is exactly Algorithm 1.
 """
 
 from __future__ import annotations
@@ -50,10 +50,10 @@ def _first_best(q: NDArray[np.float64], row: Index) -> tuple[float, Index]:
 
 
 @jit(inline="always")
-def _renewed(
+def _updated_best(
     q: NDArray[np.float64], row: Index, changed: Index, best: float, first: Index
 ) -> tuple[float, Index]:
-    """Maximum of a row and its first action after the value of ``changed`` became another."""
+    """Maximum of a row and its first action after the value of ``changed`` has changed."""
     value = q[row + changed]
     if changed == first and value < best:
         return _first_best(q, row)
@@ -97,11 +97,12 @@ def learn(
     until_episode: int,
     trace: NDArray[np.int32] | None = None,
 ) -> None:
-    """Go on learning to ``until_episode``, or to the episode in which the run converges.
+    """Continue learning up to ``until_episode``, or to the episode in which the run converges.
 
-    ``ties`` is the generator that breaks ties at random, None to take the first greedy action:
-    numba compiles the loop anew for each, without the other's code. So it does for ``trace``,
-    (max_steps,), which takes the states an episode arrives at, each episode over the last.
+    ``ties`` is the generator that breaks ties at random; with None the first greedy action is
+    taken. ``trace`` (max_steps,) receives the states that an episode arrives at; each episode
+    overwrites the one before. Numba compiles a loop for each combination of None and an array, so
+    that none holds the code of another.
     """
     next_state, terminal, q, visits = moves.next_state, moves.terminal, run.q, run.visits
     possible, n_possible = moves.possible, moves.n_possible
@@ -135,7 +136,7 @@ def learn(
             terminated = terminal[there]
             target = reward[row + action] + gamma * best_value[there]  # 0 beyond a terminal
             q[row + action] = (1.0 - alpha) * q[row + action] + alpha * target
-            best_value[state], best_action[state] = _renewed(
+            best_value[state], best_action[state] = _updated_best(
                 q, row, action, best_value[state], np.uint64(best_action[state])
             )
             path_hash = extended_hash(path_hash, action)

@@ -5,49 +5,51 @@ from hypothesis import strategies as st
 from q_learning_twin import ToleranceTwin
 
 from rssnav import ExactStates, Fluctuation, IntervalStates, ToleranceStates
-from rssnav.kernels import sensed
-from rssnav.kernels.common import N_COUNTERS, N_LABELS
-from rssnav.states import GoalRule, sensed_states
+from rssnav.discrete_states import GoalRule, reading_states
+from rssnav.kernels import q_learning_from_readings as kernel
+from rssnav.kernels.common import N_COUNTERS, N_DISCRETE_STATES
 
 GOAL = GoalRule(terminal_dbm=-21.0, reward=1000.0, replaces=False)
 
 
-def labels_of(rule, readings):
-    """Labels that a rule gives to readings (which also span its range) as they come."""
+def states_of(rule, readings):
+    """Discrete states that a rule gives to readings (which also span its range) as they come."""
     readings = np.array(readings, dtype=float)
-    states = sensed_states(rule, Fluctuation(), readings, GOAL)
-    book = sensed.Book(
-        np.full(states.n_bins, -1, dtype=np.int32), np.zeros(states.max_labels), np.zeros(1)
+    states = reading_states(rule, Fluctuation(), readings, GOAL)
+    known = kernel.KnownStates(
+        np.full(states.n_bins, -1, dtype=np.int32),
+        np.zeros(states.max_discrete_states),
+        np.zeros(1),
     )
     counters = np.zeros(N_COUNTERS, dtype=np.int64)
-    counters[N_LABELS] = states.n_listed
+    counters[N_DISCRETE_STATES] = states.n_initial
     return [
-        sensed.label_of(states.sensor, book, counters, cell, reading)
+        kernel.discrete_state_of(states.sensor, known, counters, cell, reading)
         for cell, reading in enumerate(readings)
     ]
 
 
-def test_exact_states_label_values_in_the_order_they_appear():
+def test_exact_states_number_values_in_the_order_they_appear():
     rss_dbm = np.array([-50.0, -40.0, -50.0, -60.0, -40.0])
-    assert ExactStates().labels(rss_dbm).tolist() == [0, 1, 0, 2, 1]
-    assert labels_of(ExactStates(), rss_dbm) == [0, 1, 0, 2, 1]
+    assert ExactStates().discrete_states(rss_dbm).tolist() == [0, 1, 0, 2, 1]
+    assert states_of(ExactStates(), rss_dbm) == [0, 1, 0, 2, 1]
 
 
 def test_a_reading_strictly_within_the_threshold_is_the_known_state():
     """The paper: the same state within (RSS - Th, RSS + Th), else a new one is defined."""
     rule = ToleranceStates(1.0)
-    assert labels_of(rule, [-50.0, -50.5, -49.25, -50.0]) == [0, 0, 0, 0]
-    assert labels_of(rule, [-50.0, -51.0, -49.0]) == [0, 1, 2]
+    assert states_of(rule, [-50.0, -50.5, -49.25, -50.0]) == [0, 0, 0, 0]
+    assert states_of(rule, [-50.0, -51.0, -49.0]) == [0, 1, 2]
 
 
 def test_a_reading_that_fits_two_states_is_the_nearer_and_of_two_as_near_the_older():
     rule = ToleranceStates(1.0)
-    assert labels_of(rule, [-50.0, -51.5, -50.625, -50.875, -50.75]) == [0, 1, 0, 1, 0]
-    assert labels_of(rule, [-51.5, -50.0, -50.75]) == [0, 1, 0]
+    assert states_of(rule, [-50.0, -51.5, -50.625, -50.875, -50.75]) == [0, 1, 0, 1, 0]
+    assert states_of(rule, [-51.5, -50.0, -50.75]) == [0, 1, 0]
 
 
 def test_a_later_nearer_state_takes_a_reading_over():
-    assert labels_of(ToleranceStates(1.0), [-50.0, -50.875, -51.0, -50.875]) == [0, 0, 1, 1]
+    assert states_of(ToleranceStates(1.0), [-50.0, -50.875, -51.0, -50.875]) == [0, 0, 1, 1]
 
 
 @settings(deadline=None)
@@ -58,12 +60,12 @@ def test_a_later_nearer_state_takes_a_reading_over():
 def test_the_table_of_bins_finds_what_a_search_of_all_known_states_finds(readings, threshold_db):
     twin = ToleranceTwin(threshold_db)
     expected = [twin(cell, reading) for cell, reading in enumerate(readings)]
-    assert labels_of(ToleranceStates(threshold_db), readings) == expected
+    assert states_of(ToleranceStates(threshold_db), readings) == expected
 
 
 def test_intervals_are_closed_below_and_open_above():
     rule = IntervalStates((-80.0, -60.0, -40.0))
-    assert labels_of(rule, [-90.0, -80.0, -60.5, -60.0, -40.0, 0.0]) == [0, 1, 1, 2, 3, 3]
+    assert states_of(rule, [-90.0, -80.0, -60.5, -60.0, -40.0, 0.0]) == [0, 1, 1, 2, 3, 3]
 
 
 def test_uniform_intervals_cover_the_range():
@@ -108,11 +110,11 @@ def test_fluctuation_out_of_range_is_refused():
 def test_fluctuation_has_the_stated_deviation_and_correlation(correlation):
     rss_dbm = np.array([-60.0, -50.0])
     fluctuation = Fluctuation(sigma_db=2.0, correlation=correlation)
-    states = sensed_states(ToleranceStates(1.0), fluctuation, rss_dbm, GOAL)
-    book = sensed.Book(np.zeros(0, np.int32), np.zeros(0), np.zeros(1))
+    states = reading_states(ToleranceStates(1.0), fluctuation, rss_dbm, GOAL)
+    known = kernel.KnownStates(np.zeros(0, np.int32), np.zeros(0), np.zeros(1))
     generator = np.array([1, 2, 3, 4], dtype=np.uint64)
     readings = np.array(
-        [sensed.reading_in(states.sensor, book, generator, 0) for _ in range(40_000)]
+        [kernel.reading_in(states.sensor, known, generator, 0) for _ in range(40_000)]
     )
     fluctuations = readings[100:] - rss_dbm[0]
     n_independent = fluctuations.size * (1 - correlation) / (1 + correlation)

@@ -1,4 +1,4 @@
-"""What a receiver reads: the map's value and a fluctuation that is correlated in time."""
+"""RSS readings: the map's value and a Gaussian fluctuation that is correlated in time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def fluctuating(
     fluctuation_db: NDArray[np.float64],
     generator: NDArray[np.uint64],
 ) -> float:
-    """Reading [dBm] about its mean, whose fluctuation (1,) is first-order autoregressive."""
+    """Reading [dBm] with a first-order autoregressive fluctuation (1,), which is updated."""
     if sigma_db == 0.0:
         return mean_dbm
     innovation = sigma_db * gaussian(draw(generator), draw(generator))

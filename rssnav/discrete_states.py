@@ -1,8 +1,8 @@
-"""How an RSS reading becomes a state label, and how readings fluctuate.
+"""How an RSS reading becomes a discrete state, and how readings fluctuate.
 
-The paper uses one label per RSS value (its threshold Th = 0) in a static world, and describes two
-other rules, for readings that change from visit to visit and for few states. All three are here:
-:class:`ExactStates`, :class:`ToleranceStates`, :class:`IntervalStates`.
+The paper uses one discrete state per RSS value (its threshold Th = 0) in a static world, and
+describes two other rules, for readings that change from visit to visit and for few states. All
+three are here: :class:`ExactStates`, :class:`ToleranceStates`, :class:`IntervalStates`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.kernels.sensed import INTERVALS, LISTED, TOLERANCE, Sensor
+from rssnav.kernels.q_learning_from_readings import BY_CELL, INTERVALS, TOLERANCE, Sensor
 
 MIN_THRESHOLD_DB = 1e-3
 _FLUCTUATION_RANGE = 9.0  # standard deviations; Box-Muller from 53 bits ends at 8.6
@@ -21,10 +21,10 @@ _FLUCTUATION_RANGE = 9.0  # standard deviations; Box-Muller from 53 bits ends at
 
 @dataclass(frozen=True)
 class ExactStates:
-    """One label per distinct RSS value (Th = 0). Cells that read the same share their label."""
+    """One discrete state per distinct RSS value (Th = 0), shared by cells of equal RSS."""
 
-    def labels(self, rss_dbm: NDArray[np.float64]) -> NDArray[np.int32]:
-        """Label of each cell, shape (S,), in the order in which the values first appear."""
+    def discrete_states(self, rss_dbm: NDArray[np.float64]) -> NDArray[np.int32]:
+        """Discrete state of each cell, shape (S,), numbered as the values first appear."""
         _, first, inverse = np.unique(rss_dbm, return_index=True, return_inverse=True)
         rank = np.empty(first.size, dtype=np.int32)
         rank[np.argsort(first)] = np.arange(first.size, dtype=np.int32)
@@ -33,10 +33,10 @@ class ExactStates:
 
 @dataclass(frozen=True)
 class ToleranceStates:
-    """A reading within (s - Th, s + Th) of a known state s is that state, else it founds one.
+    """A reading within (s - Th, s + Th) of a known state s is that state; others create one.
 
-    A state keeps the reading that founded it. Where a reading fits two states it is the nearer
-    one, and of two as near the older one. Known states are therefore never closer than Th.
+    A state keeps the reading that created it. A reading within reach of two states belongs to the
+    nearer one; at equal distance, to the older one. Known states are thus at least Th apart.
 
     Parameters
     ----------
@@ -56,9 +56,9 @@ class ToleranceStates:
 
 @dataclass(frozen=True)
 class IntervalStates:
-    """A fixed set of RSS intervals: label k for edges[k-1] <= RSS < edges[k].
+    """A fixed set of RSS intervals: state k for edges[k-1] <= RSS < edges[k].
 
-    Readings below the first edge have label 0, readings from the last edge on label len(edges).
+    Readings below the first edge are state 0, readings from the last edge on state len(edges).
 
     Parameters
     ----------
@@ -122,7 +122,17 @@ class Fluctuation:
 
 @dataclass(frozen=True)
 class GoalRule:
-    """When an RSS episode ends, and what that is worth."""
+    """When an RSS episode ends, and its reward.
+
+    Attributes
+    ----------
+    terminal_dbm : float
+        Reading above which the transmitter is found [dBm].
+    reward : float
+        Reward for finding it.
+    replaces : bool
+        Whether it replaces the last step's RSS difference or is added to it.
+    """
 
     terminal_dbm: float
     reward: float
@@ -130,50 +140,50 @@ class GoalRule:
 
 
 @dataclass(frozen=True, eq=False)
-class SensedStates:
+class ReadingStates:
     """A state rule applied to the cells of a world, ready for the loop.
 
     Attributes
     ----------
     sensor : Sensor
-        The loop's view of readings and labels.
+        Readings and discrete states in the loop's terms.
     n_bins : int
         Bins of the tolerance states' table (0 for the other rules).
-    max_labels : int
-        Most labels that can come to exist, and so the rows a Q-table needs.
-    n_listed : int
-        Labels that exist from the start (0 for tolerance states).
+    max_discrete_states : int
+        Most discrete states that can come to exist: the rows of the Q-table.
+    n_initial : int
+        Discrete states that exist from the start (0 for tolerance states).
     """
 
     sensor: Sensor
     n_bins: int
-    max_labels: int
-    n_listed: int
+    max_discrete_states: int
+    n_initial: int
 
 
-def sensed_states(
+def reading_states(
     rule: StateRule, fluctuation: Fluctuation, rss_dbm: NDArray[np.float64], goal: GoalRule
-) -> SensedStates:
+) -> ReadingStates:
     """Apply a state rule to the RSS (S,) [dBm] of a world's cells."""
-    margin = _FLUCTUATION_RANGE * fluctuation.sigma_db
-    low_dbm, high_dbm = float(rss_dbm.min()) - margin, float(rss_dbm.max()) + margin
-    kind, listed, edges = LISTED, np.empty(0, dtype=np.int32), np.empty(0)
+    margin_db = _FLUCTUATION_RANGE * fluctuation.sigma_db
+    low_dbm, high_dbm = float(rss_dbm.min()) - margin_db, float(rss_dbm.max()) + margin_db
+    kind, state_of_cell, edges = BY_CELL, np.empty(0, dtype=np.int32), np.empty(0)
     threshold, n_bins = 0.0, 0
     if isinstance(rule, ExactStates):
-        listed = rule.labels(rss_dbm)
-        n_listed = max_labels = int(listed.max()) + 1
+        state_of_cell = rule.discrete_states(rss_dbm)
+        n_initial = n_most = int(state_of_cell.max()) + 1
     elif isinstance(rule, IntervalStates):
         kind, edges = INTERVALS, np.array(rule.edges_dbm)
-        n_listed = max_labels = edges.size + 1
+        n_initial = n_most = edges.size + 1
     else:
         kind, threshold = TOLERANCE, rule.threshold_db
         n_bins = int((high_dbm - low_dbm) * 2.0 / threshold) + 1
-        max_labels = n_bins if fluctuation.sigma_db > 0.0 else min(n_bins, rss_dbm.size)
-        n_listed = 0
+        n_most = n_bins if fluctuation.sigma_db > 0.0 else min(n_bins, rss_dbm.size)
+        n_initial = 0
     sensor = Sensor(
         rss_dbm=rss_dbm,
         kind=kind,
-        listed=listed,
+        state_of_cell=state_of_cell,
         edges_dbm=edges,
         threshold_db=threshold,
         low_dbm=low_dbm,
@@ -183,4 +193,4 @@ def sensed_states(
         goal_reward=goal.reward,
         goal_replaces=goal.replaces,
     )
-    return SensedStates(sensor, n_bins, max_labels, n_listed)
+    return ReadingStates(sensor, n_bins, n_most, n_initial)

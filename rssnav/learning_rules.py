@@ -1,26 +1,31 @@
-"""One realisation of learning: the loop's arrays, and the loops behind one interface."""
+"""The learning rules behind one interface: which loop runs for which agent and parameters.
+
+:meth:`LearningProblem.learner` decides: an agent that acts on readings learns with
+:class:`ReadingLearner`; for others ``LEARNERS`` holds a learner for each value of
+:attr:`QLearning.rule <rssnav.learning_parameters.QLearning.rule>`. A new rule is a name in
+:data:`~rssnav.learning_parameters.LearningRule`, a loop in :mod:`rssnav.kernels`, and a row here.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.agents import Agent, DecisionProcess, QLearning, RssAgent
-from rssnav.kernels import common, sensed, tabular, temporal_difference
+from rssnav.agents import Agent
+from rssnav.decision_process import DecisionProcess
+from rssnav.discrete_states import ReadingStates
+from rssnav.kernels import common, q_learning, q_learning_from_readings, temporal_difference
 from rssnav.kernels.common import Moves, Parameters, Run
-from rssnav.states import ExactStates, GoalRule, SensedStates, sensed_states
-from rssnav.world import GridWorld
+from rssnav.learning_parameters import LearningRule, QLearning
+from rssnav.world import ACTION_NAMES, GridWorld
 
-N_ACTIONS = 8
-
-_RULES = {
-    "sarsa": temporal_difference.SARSA,
-    "double_q": temporal_difference.DOUBLE_Q,
-}
+N_ACTIONS = len(ACTION_NAMES)
 
 
 class Learner(Protocol):
@@ -29,9 +34,9 @@ class Learner(Protocol):
     Attributes
     ----------
     run : Run
-        Everything it has learnt and counted.
+        All that it has learned and counted.
     trace : (max_steps,) int32, or None
-        Where it is to write the states that an episode arrives at; the latest episode stays.
+        Receives the states that an episode arrives at; each episode overwrites the one before.
     """
 
     run: Run
@@ -41,32 +46,29 @@ class Learner(Protocol):
         """Fly to ``until_episode``, or to the episode in which the run converges."""
         ...
 
-    def cell_values(self) -> NDArray[np.float64]:
-        """Q of each cell's steady reading, shape (S, 8); -inf where the step is impossible."""
+    def state_values(self) -> NDArray[np.float64]:
+        """Q of each state (of its reading without fluctuation), shape (S, 8); -inf if blocked."""
         ...
 
-    def n_labels(self) -> int:
-        """States the agent tells apart so far."""
+    def n_discrete_states(self) -> int:
+        """Discrete states that the agent distinguishes so far."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class LearningProblem:
-    """World, agent and parameters in the loops' terms; shared by all realisations.
+    """A decision process and the parameters to learn it with; shared by all realisations.
 
     Attributes
     ----------
     process : DecisionProcess
-        Rewards and terminal states for steady readings.
+        States, steps, rewards and terminal states.
     learning : QLearning
         Parameters of Algorithm 1.
-    states : SensedStates or None
-        How readings become labels; None when every cell has its own row of Q.
     """
 
     process: DecisionProcess
     learning: QLearning
-    states: SensedStates | None
 
     @classmethod
     def of(cls, world: GridWorld, agent: Agent, learning: QLearning) -> LearningProblem:
@@ -75,52 +77,39 @@ class LearningProblem:
         Raises
         ------
         WorldError
-            When the agent cannot learn in this world.
+            When the agent cannot learn in this world, or makes no valid decision process of it.
         ValueError
             When the rule cannot learn the agent's states.
         """
         process = agent.decision_process(world, learning)
-        states = None
-        if isinstance(agent, RssAgent) and not _has_a_row_per_cell(agent, world):
-            goal = GoalRule(
-                agent.terminal_dbm, learning.goal_reward, learning.goal_reward_is == "instead"
-            )
-            states = sensed_states(agent.states, agent.fluctuation, world.rss_dbm, goal)
-        if states is not None and learning.rule != "q_learning":
+        process.check(world)
+        if process.readings is not None and learning.rule != "q_learning":
             raise ValueError(
                 f"rule: {learning.rule!r} needs a row of Q per cell, so an RssAgent with "
-                "ExactStates on a map whose values all differ, or a LocationAgent; states made "
-                "from readings can only learn by 'q_learning'"
+                "ExactStates on a map whose values all differ, or an agent that knows its state; "
+                "states made from readings can only learn by 'q_learning'"
             )
-        return cls(process, learning, states)
+        return cls(process, learning)
 
     @property
     def n_states(self) -> int:
-        """Number S of cells."""
-        return self.process.next_state.shape[0]
+        """Number S of states."""
+        return self.process.n_states
 
     def learner(self, generators: NDArray[np.uint64], episodes: int) -> Learner:
         """Begin a realisation of at most ``episodes`` from two xoshiro256++ states (8,)."""
-        if self.learning.rule != "q_learning":
-            rule = _RULES[self.learning.rule]
-            return TemporalDifferenceLearner(self, generators, episodes, rule)
-        if self.states is None:
-            return TabularLearner(self, generators, episodes)
-        return SensedLearner(self, self.states, generators, episodes)
-
-
-def _has_a_row_per_cell(agent: RssAgent, world: GridWorld) -> bool:
-    unique = np.unique(world.rss_dbm).size == world.n_states
-    return isinstance(agent.states, ExactStates) and unique
+        if self.process.readings is not None:
+            return ReadingLearner(self, self.process.readings, generators, episodes)
+        return LEARNERS[self.learning.rule](self, generators, episodes)
 
 
 def moves_of(process: DecisionProcess) -> Moves:
-    """Lay a decision process out for the loops."""
-    possible = process.next_state >= 0
+    """Arrange a decision process for the loops."""
+    possible = process.action_mask
     # A stable sort brings the possible actions of each state to the front, in their order.
     order = np.argsort(~possible, axis=1, kind="stable").astype(np.uint8)
     return Moves(
-        next_state=process.next_state.reshape(-1),
+        next_state=np.ascontiguousarray(process.next_state, dtype=np.int32).reshape(-1),
         possible=order.reshape(-1),
         n_possible=possible.sum(axis=1).astype(np.uint8),
         terminal=process.terminal,
@@ -168,13 +157,13 @@ def _initial_q(problem: LearningProblem) -> NDArray[np.float64]:
     process, learning = problem.process, problem.learning
     q = np.full(process.next_state.shape, learning.initial_q)
     if learning.maximum_over == "possible":
-        q[process.next_state < 0] = -np.inf
+        q[~process.action_mask] = -np.inf
     q[process.terminal] = 0.0
     return q
 
 
 class TabularLearner:
-    """Q-learning with one row of Q per cell."""
+    """Q-learning with one row of Q per state."""
 
     trace: NDArray[np.int32] | None = None
 
@@ -185,16 +174,16 @@ class TabularLearner:
         self.moves = moves_of(process)
         self.parameters = parameters_of(problem.learning)
         self._reward = process.reward.reshape(-1)
-        self._blocked = process.next_state < 0
+        self._possible = process.action_mask
         self.run = _new_run(problem, _initial_q(problem), generators, episodes)
-        self.greedy = tabular.Greedy(
+        self.greedy = q_learning.Greedy(
             value=np.empty(problem.n_states), action=np.empty(problem.n_states, dtype=np.uint8)
         )
-        tabular.fill_greedy(self.run.q, self.greedy)
+        q_learning.fill_greedy(self.run.q, self.greedy)
 
     def advance(self, until_episode: int) -> None:
         """Fly to ``until_episode``, or to the episode in which the run converges."""
-        tabular.learn(
+        q_learning.learn(
             self.moves,
             self._reward,
             self.parameters,
@@ -205,17 +194,17 @@ class TabularLearner:
             self.trace,
         )
 
-    def cell_values(self) -> NDArray[np.float64]:
-        """Q of each cell, shape (S, 8); -inf where the step is impossible."""
-        return np.where(self._blocked, -np.inf, self.run.q.reshape(-1, N_ACTIONS))
+    def state_values(self) -> NDArray[np.float64]:
+        """Q of each state, shape (S, 8); -inf where the step is impossible."""
+        return np.where(self._possible, self.run.q.reshape(-1, N_ACTIONS), -np.inf)
 
-    def n_labels(self) -> int:
-        """States the agent tells apart: the cells."""
-        return self._blocked.shape[0]
+    def n_discrete_states(self) -> int:
+        """Discrete states that the agent distinguishes: all states."""
+        return self._possible.shape[0]
 
 
 class TemporalDifferenceLearner:
-    """Q-learning, SARSA or Double Q-learning with one row per cell, by the slower loop."""
+    """Q-learning, SARSA or Double Q-learning with one row of Q per state, by the slower loop."""
 
     trace: NDArray[np.int32] | None = None
 
@@ -224,12 +213,13 @@ class TemporalDifferenceLearner:
         problem: LearningProblem,
         generators: NDArray[np.uint64],
         episodes: int,
+        *,
         rule: int,
     ) -> None:
         self.moves = moves_of(problem.process)
         self.parameters = parameters_of(problem.learning)
         self._reward = problem.process.reward.reshape(-1)
-        self._blocked = problem.process.next_state < 0
+        self._possible = problem.process.action_mask
         self._rule = rule
         tables = 2 if rule == temporal_difference.DOUBLE_Q else 1
         q = np.concatenate([_initial_q(problem)] * tables)
@@ -248,62 +238,70 @@ class TemporalDifferenceLearner:
             self.trace,
         )
 
-    def cell_values(self) -> NDArray[np.float64]:
-        """Q of each cell (of two tables the mean), shape (S, 8); -inf where impossible."""
-        q = self.run.q.reshape(-1, *self._blocked.shape).mean(axis=0)
-        return np.where(self._blocked, -np.inf, q)
+    def state_values(self) -> NDArray[np.float64]:
+        """Q of each state (the mean of two tables), shape (S, 8); -inf where impossible."""
+        q = self.run.q.reshape(-1, *self._possible.shape).mean(axis=0)
+        return np.where(self._possible, q, -np.inf)
 
-    def n_labels(self) -> int:
-        """States the agent tells apart: the cells."""
-        return self._blocked.shape[0]
+    def n_discrete_states(self) -> int:
+        """Discrete states that the agent distinguishes: all states."""
+        return self._possible.shape[0]
 
 
-class SensedLearner:
-    """A row of Q per label, labels made from the readings."""
+class ReadingLearner:
+    """Q-learning with one row of Q per discrete state, made from the readings."""
 
     trace: NDArray[np.int32] | None = None
 
     def __init__(
         self,
         problem: LearningProblem,
-        states: SensedStates,
+        states: ReadingStates,
         generators: NDArray[np.uint64],
         episodes: int,
     ) -> None:
         self._states = states
         self.moves = moves_of(problem.process)
         self.parameters = parameters_of(problem.learning)
-        self._blocked = problem.process.next_state < 0
+        self._possible = problem.process.action_mask
         self._initial_q = problem.learning.initial_q
-        q = np.full((states.max_labels, N_ACTIONS), self._initial_q)
+        q = np.full((states.max_discrete_states, N_ACTIONS), self._initial_q)
         self.run = _new_run(problem, q, generators, episodes)
-        self.run.counters[common.N_LABELS] = states.n_listed
-        self._book = sensed.Book(
-            label_of_bin=np.full(states.n_bins, -1, dtype=np.int32),
-            value_dbm=np.zeros(states.max_labels),
+        self.run.counters[common.N_DISCRETE_STATES] = states.n_initial
+        self._known = q_learning_from_readings.KnownStates(
+            state_of_bin=np.full(states.n_bins, -1, dtype=np.int32),
+            value_dbm=np.zeros(states.max_discrete_states),
             fluctuation_db=np.zeros(1),
         )
 
     def advance(self, until_episode: int) -> None:
         """Fly to ``until_episode``, or to the episode in which the run converges."""
-        sensed.learn(
+        q_learning_from_readings.learn(
             self.moves,
             self._states.sensor,
             self.parameters,
             self.run,
-            self._book,
+            self._known,
             until_episode,
             self.trace,
         )
 
-    def cell_values(self) -> NDArray[np.float64]:
-        """Q of each cell's steady reading, shape (S, 8); the initial Q where no state fits it."""
-        labels = np.empty(self._blocked.shape[0], dtype=np.int32)
-        sensed.steady_labels(self._states.sensor, self._book, labels)
-        q = self.run.q.reshape(-1, N_ACTIONS)[labels]
-        q = np.where((labels >= 0)[:, None], q, self._initial_q)
-        return np.where(self._blocked, -np.inf, q)
+    def state_values(self) -> NDArray[np.float64]:
+        """Q of each cell's reading without fluctuation, (S, 8); the initial Q where unknown."""
+        states = np.empty(self._possible.shape[0], dtype=np.int32)
+        q_learning_from_readings.steady_discrete_states(self._states.sensor, self._known, states)
+        q = self.run.q.reshape(-1, N_ACTIONS)[states]
+        q = np.where((states >= 0)[:, None], q, self._initial_q)
+        return np.where(self._possible, q, -np.inf)
 
-    def n_labels(self) -> int:
-        """States the agent tells apart so far."""
-        return int(self.run.counters[common.N_LABELS])
+    def n_discrete_states(self) -> int:
+        """Discrete states that the agent distinguishes so far."""
+        return int(self.run.counters[common.N_DISCRETE_STATES])
+
+
+LEARNERS: dict[LearningRule, Callable[[LearningProblem, NDArray[np.uint64], int], Learner]] = {
+    "q_learning": TabularLearner,
+    "sarsa": partial(TemporalDifferenceLearner, rule=temporal_difference.SARSA),
+    "double_q": partial(TemporalDifferenceLearner, rule=temporal_difference.DOUBLE_Q),
+}
+"""Learner of each rule, for agents that know their state."""

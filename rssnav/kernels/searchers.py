@@ -1,6 +1,6 @@
-"""Flights that follow a rule and learn nothing: the random walk and the ascent of the RSS.
+"""Flights that follow a rule without learning: the random walk and the ascent of the RSS.
 
-A flight is logged second by second: a step to another cell, or one more reading in the same.
+A flight is logged every second: a step to another cell, or one more reading in the same cell.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rssnav.kernels.common import Moves
 from rssnav.kernels.compiling import jit
-from rssnav.kernels.readings import fluctuating
+from rssnav.kernels.rss_fluctuation import fluctuating
 from rssnav.kernels.xoshiro import draw, index_from_low_bits
 
 
@@ -23,14 +23,14 @@ class Receiver(NamedTuple):
     sigma_db: float  # standard deviation of the fluctuation
     correlation: float  # of the fluctuation from one reading to the next
     fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
-    found_dbm: float  # a reading above it says that the source is found
+    found_dbm: float  # a reading above it means that the transmitter is found
 
 
 class Flight(NamedTuple):
-    """A flight as it goes on."""
+    """A flight in progress."""
 
     states: NDArray[np.int32]  # (max_steps + 1,) the start first
-    seconds: NDArray[np.int64]  # (1,) how many of them are flown
+    seconds: NDArray[np.int64]  # (1,) seconds flown
     generator: NDArray[np.uint64]  # (4,)
 
 
@@ -70,7 +70,7 @@ def random_step(moves: Moves, flight: Flight, state: int) -> int:
 
 @jit()
 def walk(moves: Moves, receiver: Receiver, flight: Flight, steps: int) -> bool:
-    """Fly random steps from where the flight is; whether a reading found the source."""
+    """Fly random steps on; returns whether a reading found the transmitter."""
     state = int(flight.states[flight.seconds[0]])
     for _ in range(steps):
         if is_over(flight):
@@ -97,7 +97,7 @@ def _mean_reading(receiver: Receiver, flight: Flight, readings: int) -> float:
 def _shuffle(
     moves: Moves, flight: Flight, state: int, heading: int, order: NDArray[np.int64]
 ) -> int:
-    """Fill ``order`` with the possible actions, the heading first, others at random; how many."""
+    """Fill ``order`` with the possible actions, the heading first; returns how many there are."""
     count = int(moves.n_possible[state])
     for k in range(count):
         other = int(index_from_low_bits(draw(flight.generator), np.uint64(k + 1)))
@@ -141,9 +141,9 @@ def _climb(
 def ascend(
     moves: Moves, receiver: Receiver, flight: Flight, readings: int, escape_steps: int
 ) -> bool:
-    """Climb the mean reading to the source; from a local maximum escape at random, or give up.
+    """Climb the mean reading to the goal; from a local maximum escape at random, or give up.
 
-    Returns whether the source was found, as far as the readings tell.
+    Returns whether the readings say that the transmitter is found.
     """
     order = np.empty(8, dtype=np.int64)
     level_dbm, heading = _mean_reading(receiver, flight, readings), 0
