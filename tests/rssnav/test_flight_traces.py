@@ -33,7 +33,7 @@ def test_trace_is_the_flight_and_changes_nothing(room_world, agent, learning) ->
         action = np.argmax(steps_taken, axis=1)
         assert steps_taken.any(axis=1).all()
         assert np.count_nonzero(action % 2) == diagonal
-        if problem.states is None:
+        if problem.process.readings is None:
             assert problem.process.terminal[flight[-1]] == (not truncated)
         visits += np.bincount(flight, minlength=problem.n_states)
     np.testing.assert_array_equal(visits, traced.run.visits)

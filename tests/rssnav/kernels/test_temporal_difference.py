@@ -101,7 +101,7 @@ def test_with_the_maximum_it_is_the_fast_loop_to_the_last_bit(room_world, agent,
     problem = LearningProblem.of(room_world, agent, learning)
     generators = generator_states(5, 0)
     fast = advance(TabularLearner(problem, generators, 40), 40)
-    slow = TemporalDifferenceLearner(problem, generators, 40, temporal_difference.Q_LEARNING)
+    slow = TemporalDifferenceLearner(problem, generators, 40, rule=temporal_difference.Q_LEARNING)
     advance(slow, 40)
     assert np.array_equal(fast.run.episodes, slow.run.episodes)
     assert np.array_equal(fast.run.q, slow.run.q)
