@@ -196,5 +196,7 @@ def test_parameters_out_of_range_are_refused(make, message):
 
 @pytest.mark.parametrize("wrong", [{"runs": 0}, {"max_steps": 0}, {"threads": 0}])
 def test_budgets_out_of_range_are_refused(wrong):
-    with pytest.raises(ValueError, match=rf"{next(iter(wrong))}(: 0 must be| = 0: expected) at least 1"):
+    with pytest.raises(
+        ValueError, match=rf"{next(iter(wrong))}(: 0 must be| = 0: expected) at least 1"
+    ):
         search(world_of(room_plan()), RandomWalk(), **wrong)
