@@ -12,6 +12,7 @@ from rssnav.explorer.map_figure import path_colours
 from rssnav.explorer.session import Session
 from rssnav.explorer.styles import WIDGETS, decibels, pairs, problem, thousands
 from rssnav.explorer.tracing import CellPaths
+from rssnav.pictures.paths import path_lines
 
 TOP = 12
 LINE_RADIUS = 0.002
@@ -48,10 +49,9 @@ class CellPanel:
             self._table.object = "<p>Tracing the paths ...</p>" if finder.busy else _INVITATION
 
 
-def strongest(found: CellPaths, top: int = TOP) -> list[NDArray[np.float64]]:
+def strongest(found: CellPaths) -> list[NDArray[np.float64]]:
     """Vertices (n_i, 3) [m] of the strongest paths, both ends included."""
-    paths = found.paths
-    return [paths.vertices[k, : paths.n_interactions[k] + 2] for k in range(min(top, len(paths)))]
+    return path_lines(found.paths)[:TOP]
 
 
 def page_3d(plan: FloorPlan, found: CellPaths | None) -> str:

@@ -35,7 +35,7 @@ openings = [{ kind = "door", offset_m = 1, width_m = 1, head_m = 2.4 }]
 """
 
 QUICK = ("--reflections", "1", "--diffractions", "0")
-"""Few enough paths for a test; cells behind the partition stay dark."""
+"""Few enough paths for a test; cells behind the partition have none."""
 
 ESCAPE = re.compile(r"\x1b\[")
 

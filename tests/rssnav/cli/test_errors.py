@@ -109,19 +109,19 @@ def test_start_that_cannot_reach_the_source_at_the_speed(made) -> None:
     assert "speeds that can: 1" in line
 
 
-def test_dark_cells_are_no_place_for_an_rss_agent(made) -> None:
+def test_an_rss_agent_needs_a_path_in_every_cell(made) -> None:
     plan, target = made
     line = fault("train", plan, "--map", target)
     assert "have no path from the source (-inf dBm), at (" in line
     assert "allow more reflections" in line
 
 
-@pytest.mark.parametrize("share", [0.0, 0.01, 0.3, 0.9, 0.999])
-def test_truncated_map(made, tmp_path, share) -> None:
+@pytest.mark.parametrize("fraction", [0.0, 0.01, 0.3, 0.9, 0.999])
+def test_truncated_map(made, tmp_path, fraction) -> None:
     plan, target = made
     whole = target.read_bytes()
     cut = tmp_path / "cut.h5"
-    cut.write_bytes(whole[: int(share * len(whole))])
+    cut.write_bytes(whole[: int(fraction * len(whole))])
     line = fault("train", plan, "--map", cut)
     assert line.startswith(f"rssnav: {cut}: ")
     assert f"compute the map again; `rssnav map PLAN -o {cut}`" in line

@@ -123,11 +123,11 @@ def _row(outcome: Outcome) -> tuple[Cell, ...]:
 
 
 STUDY = Study(
-    "comparison",
-    50,
-    3,
-    entries(),
-    measure,
-    lambda outcomes: (comparison_table(outcomes),),
-    lambda _outcomes: {},
+    name="comparison",
+    runs=50,
+    quick_runs=3,
+    pieces=entries(),
+    measure=measure,
+    tables=lambda outcomes: (comparison_table(outcomes),),
+    figures=lambda _: {},
 )

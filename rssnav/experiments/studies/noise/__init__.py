@@ -66,11 +66,11 @@ def _row(outcome: Outcome) -> tuple[Cell, ...]:
 
 
 STUDY = Study(
-    "noise",
-    10,
-    1,
-    settings(),
-    measure,
-    lambda outcomes: (noise_table(outcomes),),
-    lambda outcomes: {"noise": figure.draw(outcomes)},
+    name="noise",
+    runs=10,
+    quick_runs=1,
+    pieces=settings(),
+    measure=measure,
+    tables=lambda outcomes: (noise_table(outcomes),),
+    figures=lambda outcomes: {"noise": figure.draw(outcomes)},
 )

@@ -42,4 +42,12 @@ def _in_order(outcomes: Sequence[Outcome]) -> list[Outcome]:
     return sorted(outcomes, key=lambda outcome: _ROWS[outcome.alternative])
 
 
-STUDY = Study("sensitivity", 20, 2, trials(), measure, make_tables, draw_figures)
+STUDY = Study(
+    name="sensitivity",
+    runs=20,
+    quick_runs=2,
+    pieces=trials(),
+    measure=measure,
+    tables=make_tables,
+    figures=draw_figures,
+)
