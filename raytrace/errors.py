@@ -21,24 +21,23 @@ class MapFileError(ValueError):
 
     Attributes
     ----------
-    kind
-        "damaged-map" (truncated, data missing, or another version of the format), "other-plan"
-        (the map of another plan), "occupied" (another file stands where a map should go), or ""
-        (not a radio map).
     path
-        The file; None where the map is in none.
+        The file; None for a map that is in none.
+    remedy
+        Key of what would help, for programs that offer it in their own words: "make_map" or
+        "replace_file"; None where the message says all.
     """
 
-    def __init__(self, message: str, kind: str = "", path: Path | None = None) -> None:
+    def __init__(self, message: str, path: Path | None = None, remedy: str | None = None) -> None:
         super().__init__(message)
-        self.kind = kind
         self.path = path
+        self.remedy = remedy
 
 
 class MissingMapError(FileNotFoundError):
-    """No radio map file at a path."""
+    """No radio map file at a path; `remedy` as of `MapFileError`."""
 
-    kind = "missing-map"
+    remedy = "make_map"
 
     def __init__(self, path: Path) -> None:
         super().__init__(errno.ENOENT, "no such radio map file", str(path))

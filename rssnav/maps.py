@@ -200,8 +200,8 @@ def require_map_for(plan: FloorPlan, radio_map: RadioMap, path: str | Path | Non
         f"{where}the map was made for another plan: plan_sha256 = "
         f"{radio_map.plan_sha256[:12] or 'none'}, but plan {plan.name!r} has {plan.sha256[:12]}; "
         "compute it again, or give the plan it was made for",
-        "other-plan",
         None if path is None else Path(path),
+        remedy="make_map",
     )
 
 
@@ -217,8 +217,8 @@ def _current_map(request: MapRequest, path: Path, notice: Notice | None) -> Radi
             raise MapFileError(
                 f"{path}: there is a file that is not a radio map, and it is left alone; give "
                 "another path, or force=True to replace it",
-                "occupied",
                 path,
+                remedy="replace_file",
             ) from error
         report(f"{path} is damaged or of another version; computing it again")
         return None

@@ -166,7 +166,7 @@ def is_radio_map(path: Path) -> bool:
 
 
 def _damaged(path: Path, problem: str) -> MapFileError:
-    return MapFileError(f"{path}: {problem}; compute the map again", "damaged-map", path)
+    return MapFileError(f"{path}: {problem}; compute the map again", path, remedy="make_map")
 
 
 def _read(file: h5py.File, path: Path) -> dict[str, Any]:
@@ -201,7 +201,7 @@ def _check_format(attributes: dict[str, Any], path: Path) -> None:
         raise MapFileError(
             f"{path}: an HDF5 file, but not a radio map (attribute format = "
             f"{attributes.get('format')!r}, expected {FORMAT!r})",
-            path=path,
+            path,
         )
     if attributes["format_version"] != FORMAT_VERSION:
         raise _damaged(

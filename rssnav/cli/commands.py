@@ -16,7 +16,7 @@ from rssnav.cli.failures import (
     NOTHING_HALF,
     complain,
     is_anticipated,
-    with_hint,
+    with_remedy,
 )
 
 
@@ -112,5 +112,5 @@ class Commands(TyperGroup):
         except Exception as error:
             if not is_anticipated(error):
                 raise
-            complain(with_hint(error))
+            complain(with_remedy(error))
             raise typer.Exit(COULD_NOT) from error

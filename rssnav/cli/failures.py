@@ -9,13 +9,17 @@ INTERRUPTED = 130
 
 NOTHING_HALF = "interrupted; files are written whole or not at all, so nothing is left half-done"
 
-HINTS = {
-    "missing-map": "`rssnav map PLAN -o {path}` makes one",
-    "damaged-map": "`rssnav map PLAN -o {path}` does",
-    "other-plan": "`rssnav map PLAN -o {path}` makes the map of PLAN",
-    "occupied": "on the command line, --force does",
+REMEDIES = {
+    "make_map": "`rssnav map PLAN -o {path}`",
+    "replace_file": "--force",
+    "unit": "--unit UNIT",
+    "level": "--level LEVEL",
+    "scale_m": "--scale M",
+    "height_m": "--height M",
+    "layers": "--layer NAME=KIND",
+    "install_ifc": 'pip install "rssnav[ifc]"',
 }
-"""What the command adds to an error, by the attribute `kind` that the libraries give it."""
+"""What a user of the command does, by the key `remedy` that the libraries give an error."""
 
 
 def is_anticipated(error: Exception) -> bool:
@@ -33,10 +37,9 @@ def complain(message: str) -> None:
     print(f"rssnav: {message}", file=sys.stderr)
 
 
-def with_hint(error: Exception) -> str:
-    """Say what went wrong, and which command or option puts it right, on one line."""
-    hint = HINTS.get(getattr(error, "kind", ""))
-    text = describe(error)
-    if hint is None:
+def with_remedy(error: Exception) -> str:
+    """Say what went wrong, and which command or option helps, on one line."""
+    text, remedy = describe(error), getattr(error, "remedy", None)
+    if remedy is None:
         return text
-    return f"{text}; {hint.format(path=getattr(error, 'path', None) or 'FILE')}"
+    return f"{text}; use {REMEDIES[remedy].format(path=getattr(error, 'path', None) or 'FILE')}"

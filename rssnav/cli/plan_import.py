@@ -8,22 +8,11 @@ from typing import Annotated
 import typer
 
 from atomicfiles import atomic_write
-from floorplans import PlanError
 from floorplans.importers import Imported, ImportOptions, import_plan
 from floorplans.repair.walls import Change
 from rssnav.cli.console import print_json, print_table
 from rssnav.cli.options import Json, check_suffix, examples
 from rssnav.cli.plan_facts import facts_of, print_facts
-
-REMEDIES = {
-    "unit": "--unit UNIT",
-    "level": "--level LEVEL",
-    "scale_m": "--scale M",
-    "height_m": "--height M",
-    "layers": "--layer NAME=KIND",
-    "install_ifc": 'pip install "rssnav[ifc]"',
-}
-"""What this command offers for each key of `PlanError.remedy`."""
 
 LISTED_CHANGES = ("closed", "dropped", "raised")
 """Kinds of changes that are listed one by one; of the others the report tells how many."""
@@ -179,21 +168,10 @@ def import_file(
     )
     if output.exists() and not force:
         raise FileExistsError(17, "the file is there already; --force replaces it", str(output))
-    imported = _import(file, options)
+    imported = import_plan(file, options)
     with atomic_write(output) as beside:
         beside.write_text(imported.toml(), encoding="utf-8", newline="\n")
     _report(imported, output, as_json)
-
-
-def _import(file: Path, options: ImportOptions) -> Imported:
-    """Import a file; say which option of this command settles what the file leaves open."""
-    try:
-        return import_plan(file, options)
-    except PlanError as error:
-        if error.remedy is None:
-            raise
-        problem = f"{error.problem}; use {REMEDIES[error.remedy]}"
-        raise PlanError(problem, error.place, error.value, error.origin, error.at) from error
 
 
 def _report(imported: Imported, output: Path, as_json: bool) -> None:

@@ -148,7 +148,7 @@ def test_a_truncated_file_is_refused(saved: Path, share: float) -> None:
     saved.write_bytes(content[: int(share * len(content))])
     with pytest.raises(MapFileError, match=r"map\.h5.*again") as error:
         RadioMap.load(saved)
-    assert (error.value.kind, error.value.path) == ("damaged-map", saved)
+    assert (error.value.path, error.value.remedy) == (saved, "make_map")
 
 
 @pytest.mark.parametrize("content", [b"", b"x,y,rss\n1,2,3\n", b"\x89HDF\r\n\x1a\n" + bytes(999)])
@@ -203,7 +203,7 @@ def test_a_layer_that_does_not_fit_is_refused(saved: Path, data: np.ndarray) -> 
 def test_a_missing_file_is_just_missing(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match=r"no such radio map file.*nowhere\.h5") as error:
         RadioMap.load(tmp_path / "nowhere.h5")
-    assert error.value.kind == "missing-map"
+    assert error.value.remedy == "make_map"
     assert error.value.path == tmp_path / "nowhere.h5"
 
 

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import h5py
 import pytest
 from cli_plans import QUICK, ROOM, done, edited, fault, room_file, run
+
+import floorplans
+import raytrace
+import rssnav
+from rssnav.cli.failures import REMEDIES
 
 DOOR = "offset_m = 1, width_m = 1, head_m = 2.4"
 SECOND_DOOR = '{ kind = "door", offset_m = 1.5, width_m = 1, head_m = 2 }'
@@ -124,7 +132,7 @@ def test_truncated_map(made, tmp_path, fraction) -> None:
     cut.write_bytes(whole[: int(fraction * len(whole))])
     line = fault("train", plan, "--map", cut)
     assert line.startswith(f"rssnav: {cut}: ")
-    assert f"compute the map again; `rssnav map PLAN -o {cut}`" in line
+    assert f"compute the map again; use `rssnav map PLAN -o {cut}`" in line
 
 
 def test_map_that_is_a_text_file(made, tmp_path) -> None:
@@ -238,3 +246,14 @@ def test_options_that_contradict(made, monkeypatch, options, expected) -> None:
 
 def test_room_the_cases_are_edits_of_is_itself_in_order(tmp_path) -> None:
     assert done("plan", "check", room_file(tmp_path, ROOM)).endswith("room.toml is in order\n")
+
+
+def test_command_knows_every_remedy_that_the_libraries_name() -> None:
+    text = "".join(
+        file.read_text(encoding="utf-8")
+        for package in (floorplans, raytrace, rssnav)
+        for file in Path(package.__file__).parent.rglob("*.py")
+    )
+    named = re.findall(r'remedy = "(\w+)"|remedy="(\w+)"', text)
+    assert {first or second for first, second in named} <= set(REMEDIES)
+    assert {"make_map", "replace_file", "unit"} <= {first or second for first, second in named}
