@@ -1,16 +1,16 @@
-"""The tracer: scene, source and receivers in; paths, or a map of their sums, out."""
+"""The tracer: scene, transmitter and receivers in; paths, or a map of their sums, out."""
 
 import platform
 import time
+from dataclasses import fields
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from raytrace.arrays import Floats
 from raytrace.config import TraceConfig
 from raytrace.grid import Grid
-from raytrace.kernels.tracing import new_record, new_sums
 from raytrace.radio.antennas import Antenna
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.layers import layers_of
@@ -18,10 +18,9 @@ from raytrace.results.paths import Paths
 from raytrace.results.radio_map import RadioMap
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import Progress, sum_paths
-from raytrace.solver.path_classes import Family, all_families
-from raytrace.solver.setup import Tracing, prepare
-
-Floats = NDArray[np.float64]
+from raytrace.solver.evaluation import evaluation_of
+from raytrace.solver.path_classes import path_classes
+from raytrace.solver.setup import prepare
 
 TRACER_VERSION = 3
 """Grows whenever the same scene would give another map."""
@@ -29,7 +28,7 @@ TRACER_VERSION = 3
 
 def trace_paths(
     scene: Scene,
-    source: Transmitter,
+    transmitter: Transmitter,
     receivers: Floats,
     config: TraceConfig | None = None,
     *,
@@ -39,10 +38,10 @@ def trace_paths(
 
     Parameters
     ----------
-    scene, source
+    scene, transmitter
         The building and the transmitter.
     receivers
-        (n, 3) positions [m]; one outside the building is reached by no path.
+        (n, 3) positions [m]; no path reaches one outside the building.
     config
         How many reflections and diffractions; 6 and 1 by default.
     receive_antenna
@@ -61,44 +60,20 @@ def trace_paths(
     receivers = np.array(receivers, dtype=np.float64)
     if receivers.ndim != 2 or receivers.shape[1] != 3 or not np.isfinite(receivers).all():
         raise ValueError(f"receivers of shape {receivers.shape}: expected finite numbers (n, 3)")
-    tracing = prepare(scene, source, receivers, config or TraceConfig(), receive_antenna)
-    found = [_write_out(tracing, family) for family in all_families(tracing)]
+    config = config or TraceConfig()
+    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
+    classes = path_classes(prepare(scene, transmitter.position, receivers, config))
+    found = [path_class.list_paths(evaluation) for path_class in classes]
     return (
-        Paths(
-            np.concatenate([p.receiver for p in found]),
-            np.concatenate([p.interactions for p in found]),
-            np.concatenate([p.vertices for p in found]),
-            np.concatenate([p.length_m for p in found]),
-            np.concatenate([p.gain for p in found]),
-            np.concatenate([p.weight for p in found]),
-        )
+        Paths(*(np.concatenate([getattr(p, f.name) for p in found]) for f in fields(Paths)))
         .with_halves_joined()
         .strongest_first()
     )
 
 
-def _write_out(tracing: Tracing, family: Family) -> Paths:
-    """Every path of a family: counted first, then written."""
-    config = tracing.config
-    sums = new_sums(len(tracing.trace.receivers), config.max_reflections)
-    count = new_record(0)
-    family.write_to(sums, count)
-    n = int(count.used[0])
-    record = new_record(n)
-    most = config.max_reflections + config.max_diffractions + config.max_transmissions
-    points = np.zeros((n, most + 2, 3))
-    kinds = np.zeros((n, most), np.int8)
-    if n:
-        family.write_to(new_sums(len(tracing.trace.receivers), config.max_reflections), record)
-        family.write_points(record, points, kinds)
-    length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
-    receiver = family.receivers_of(record) if n else np.empty(0, np.int64)
-    return Paths(receiver, kinds, points, length, record.gain, record.share)
-
-
 def compute_radio_map(
     scene: Scene,
-    source: Transmitter,
+    transmitter: Transmitter,
     grid: Grid,
     config: TraceConfig | None = None,
     *,
@@ -110,7 +85,7 @@ def compute_radio_map(
 
     Parameters
     ----------
-    scene, source, grid
+    scene, transmitter, grid
         The building, the transmitter, and where receivers are.
     config
         How many reflections and diffractions; 6 and 1 by default.
@@ -128,15 +103,19 @@ def compute_radio_map(
     """
     started = time.perf_counter()
     config = config or TraceConfig()
-    tracing = prepare(scene, source, grid.points(), config, receive_antenna)
-    sums = sum_paths(tracing, threads, progress)
-    straight_m = np.linalg.norm(grid.points() - np.array(source.position), axis=1)
-    layers = layers_of(sums, straight_m, source.power_dbm)
+    points = grid.points()
+    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
+    classes = path_classes(prepare(scene, transmitter.position, points, config))
+    sums = sum_paths(
+        classes, evaluation, max_paths=config.max_paths, threads=threads, progress=progress
+    )
+    straight_m = np.linalg.norm(points - np.array(transmitter.position), axis=1)
+    layers = layers_of(sums, straight_m, transmitter.power_dbm)
     on_grid: dict[str, Any] = {n: layer.reshape(grid.shape) for n, layer in layers.items()}
     return RadioMap(
         **on_grid,
         grid=grid,
-        transmitter=source,
+        transmitter=transmitter,
         config=config,
         provenance=_provenance(scene, time.perf_counter() - started),
     )

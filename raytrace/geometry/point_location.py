@@ -1,19 +1,13 @@
 """Where points lie in the plan view, and which edges need a bounce to be met."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from raytrace.kernels.beams import (
-    Targets,
-    edge_side,
-    enlarged,
-    most_corners,
-    resized,
-    share_within,
-)
+from raytrace.arrays import Bools, Floats, Ints
+from raytrace.kernels.beam_hits import Targets, edge_side, most_edges, weight_within
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import WIDTH
-from raytrace.kernels.plan_view import GRAZING_M, Floats, Ints, PlanView, material_at
+from raytrace.kernels.plan_view import GRAZING_M, PlanView, material_at
+from raytrace.kernels.rows import enlarged, resized
 
 
 @jit()
@@ -36,7 +30,7 @@ def cells_around(view: PlanView, xy: Floats) -> tuple[Ints, Floats]:
         (m,) how much of the point's surroundings is in the cell.
     """
     places, share = np.empty((1024, 2), np.int64), np.empty((1024, 1))
-    ways = np.empty((most_corners(view), 2))
+    ways = np.empty((most_edges(view), 2))
     n = 0
     for k in range(len(xy)):
         for c in range(len(view.cell_edges) - 1):
@@ -54,7 +48,7 @@ def cells_around(view: PlanView, xy: Floats) -> tuple[Ints, Floats]:
             if n == len(places):
                 places, share = enlarged(places), enlarged(share)
             places[n, 0], places[n, 1] = k, c
-            share[n, 0] = share_within(ways, touched)
+            share[n, 0] = weight_within(ways, touched)
             n += 1
             if touched == 0:
                 break
@@ -74,7 +68,7 @@ def wall_around(view: PlanView, cells: Ints, place: tuple[float, float, float]) 
     return -1
 
 
-def targets_in(view: PlanView, xy: Floats, wanted: NDArray[np.bool_]) -> Targets:
+def targets_in(view: PlanView, xy: Floats, wanted: Bools) -> Targets:
     """Sort points by cell; those outside the building or not wanted are left out."""
     places, share = cells_around(view, xy)
     kept = np.flatnonzero(wanted[places[:, 0]] & (share > 0.0))

@@ -9,15 +9,15 @@ instructions. `tests/raytrace/kernels/test_lanes.py` holds one to the other.
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from raytrace.arrays import Bools, Complexes, Floats
 
 WIDTH = 8
 """How many numbers lie side by side: a 512-bit register, or two of 256 bits."""
 
-Floats = NDArray[np.float64]
-Lanes = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-ComplexLanes = NDArray[np.complex128]
+Lanes = Floats
+Mask = Bools
+ComplexLanes = Complexes
 
 Number = Any
 """A float or eight: what a kernel takes that is compiled for both."""
@@ -84,17 +84,17 @@ def where_complex(chosen: Mask, a: ComplexLanes, b: ComplexLanes) -> ComplexLane
 
 
 def none_chosen() -> Mask:
-    """Eight times not."""
+    """Mask of eight false."""
     return np.zeros(WIDTH, np.bool_)
 
 
 def any_of(chosen: Mask) -> bool:
-    """Whether there is one."""
+    """Whether at least one is true."""
     return bool(chosen.any())
 
 
 def all_of(chosen: Mask) -> bool:
-    """Whether there are eight."""
+    """Whether all eight are true."""
     return bool(chosen.all())
 
 

@@ -1,23 +1,27 @@
-"""The plan view's arrays, and the questions every kernel asks of them."""
+"""The plan view's arrays, and look-ups in them that every kernel needs."""
 
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from raytrace.arrays import Floats, Ints
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.lanes import Number
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from raytrace.kernels.lanes import (
+    Lanes,
+    Mask,
+    Number,
+    absolute,
+    floor,
+    lanes_of,
+    none_chosen,
+    where,
+)
 
 WALL, PARTIAL, PORTAL = 0, 1, 2
-"""Kinds of cell edges: solid at every height, open at some, open at all."""
+"""Kinds of cell edges: solid at every height, open at some heights, open at every height."""
 
 GRAZING_M = 1e-7
-"""A ray that passes a corner or a rim no further off than this goes through it [m]. What differs
-on its two sides then counts half on either (docs/conventions.md, "Ties")."""
+"""A ray within this distance of a corner or of a horizontal edge grazes it [m]. What differs on
+the two sides of such a ray counts half on either (docs/conventions.md, "Grazing rays")."""
 
 
 class PlanView(NamedTuple):
@@ -38,7 +42,7 @@ class PlanView(NamedTuple):
     kind
         (n_edges,) WALL, PARTIAL or PORTAL.
     profile
-        (n_edges,) what stands on the edge over the height, -1 for a portal.
+        (n_edges,) height profile of the wall on the edge, -1 for a portal.
     twin, beyond
         (n_edges,) the same edge seen from the other cell, and that cell, where a ray can pass
         at some height; -1 where there is none.
@@ -101,3 +105,32 @@ def material_at(view: PlanView, profile: int, z: float) -> int:
     while k < last and z > view.bin_top[k]:
         k += 1
     return int(view.bin_material[k])
+
+
+@jit(inline=True)
+def in_building(z: Lanes, height: float) -> Lanes:
+    """`folded` for eight heights."""
+    storeys = floor(z / height)
+    rest = z - storeys * height
+    odd = storeys - 2.0 * floor(0.5 * storeys)
+    return where(odd > 0.5, height - rest, rest)
+
+
+@jit(inline=True)
+def materials_at(view: PlanView, profile: int, z: Lanes) -> Lanes:
+    """`material_at` for eight heights."""
+    k = int(view.profile_bins[profile + 1]) - 1
+    material = lanes_of(float(view.bin_material[k]))
+    while k > view.profile_bins[profile]:
+        k -= 1
+        material = where(z <= view.bin_top[k], float(view.bin_material[k]), material)
+    return material
+
+
+@jit(inline=True)
+def at_horizontal_edge(view: PlanView, profile: int, z: Lanes) -> Mask:
+    """Which heights are within `GRAZING_M` of a horizontal edge of a profile."""
+    near = none_chosen()
+    for k in range(view.profile_bins[profile], view.profile_bins[profile + 1] - 1):
+        near = near | (absolute(z - view.bin_top[k]) < GRAZING_M)
+    return near

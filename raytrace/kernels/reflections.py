@@ -1,84 +1,108 @@
-"""Paths that are only reflected: every beam hit, at every image height."""
+"""Paths that are only reflected: every hit of a beam, at every image height."""
 
 import math
+from typing import NamedTuple
 
-from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Hits, Tree
+from raytrace.kernels.beam_hits import Hits
+from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Tree
+from raytrace.kernels.blocks import next_block
+from raytrace.kernels.bounds import free_space, leg_bound
+from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.field import carried, new_ray, phasor, received, sent
+from raytrace.kernels.field import new_ray, propagate
+from raytrace.kernels.field_tables import FieldTables, phasor
 from raytrace.kernels.lanes import any_of, lanes_of, load, none_chosen
-from raytrace.kernels.tracing import (
-    Record,
-    Room,
-    Sums,
-    Trace,
-    add_bundle,
-    counted,
-    free_space,
-    leg_bound,
-    next_block,
-    no_paths,
-    recorded,
-    strong,
-    with_path,
+from raytrace.kernels.records import record_paths
+from raytrace.kernels.sums import empty_bundle, with_path
+from raytrace.kernels.unfolding import Leg, unfold
+from raytrace.kernels.validity import (
+    ONE_SIDED_OFFSETS_M,
+    next_evaluation,
+    one_sided_weight,
+    validity_weight,
+    walls_met,
 )
-from raytrace.kernels.unfolding import LOOKS, fitting, next_look, share_of_look, unfold, walls_met
+from raytrace.kernels.waves import launch, receive
+from raytrace.kernels.workspace import (
+    Collector,
+    Workspace,
+    add_bundle,
+    apply_power_threshold,
+    count_path,
+)
+
+
+class ReflectionBeams(NamedTuple):
+    """Beams from the transmitter, and the receivers visible from them."""
+
+    tree: Tree
+    hits: Hits
 
 
 @jit(fast=True, allocates=False)
 def sum_reflections(
-    trace: Trace, tree: Tree, hits: Hits, room: Room, sums: Sums, record: Record
+    geometry: TraceGeometry,
+    tables: FieldTables,
+    beams: ReflectionBeams,
+    leg: Leg,
+    workspace: Workspace,
+    collector: Collector,
 ) -> None:
-    """Add the paths of all hits of the source's beam tree.
+    """Add the paths of all hits of the transmitter's beam tree.
 
     Parameters
     ----------
-    trace, tree
-        The trace and the beams from the source.
-    hits
-        Receivers and beams.
-    room
-        To work in.
-    sums, record
+    geometry, tables
+        The geometry of the trace, and the tables of its fields.
+    beams
+        Beams and receivers.
+    leg, workspace
+        Scratch.
+    collector
         Added to.
     """
-    height, z_source, wavelength = trace.radio.height, trace.source[2], trace.radio.wavelength
-    z_root, leg = lanes_of(z_source), room.leg
+    (tree, hits), building, wavelength = beams, geometry.building, tables.wavelength
+    z_transmitter = geometry.transmitter[2]
+    z_root = lanes_of(z_transmitter)
     first = 0
     while first < len(hits.pair):
-        block = next_block(trace, hits, first, room)
+        block = next_block(geometry, hits, first, workspace)
         first += block.n
         i = block.beam
         order = tree.link[i, ORDER]
-        n, length, ux, uy = unfold(trace.plan, tree.link, tree.beam, i, (block.x, block.y), leg)
+        n, length, ux, uy = unfold(building.plan, tree.link, tree.beam, i, (block.x, block.y), leg)
         per_length = 1.0 / length
         arriving = (
             (tree.beam[i, IMAGE_X] - block.x) * per_length,
             (tree.beam[i, IMAGE_Y] - block.y) * per_length,
         )
-        n_images = 2 * (trace.max_order - order) + 1
-        share_here = block.share
-        if trace.least_power > 0.0:
-            bound = free_space(trace, length) * leg_bound(trace, leg, n, length, order)
-            share_here = strong(trace, sums, room, bound, share_here, float(n_images))
-        bundle = no_paths()
-        k, look, touching = 0, 0, none_chosen()
+        n_images = 2 * (geometry.max_reflections - order) + 1
+        weight_here = block.weight
+        if collector.min_power > 0.0:
+            bound = free_space(tables, length) * leg_bound(geometry, tables, leg, n, length, order)
+            weight_here = apply_power_threshold(
+                collector, workspace, bound, weight_here, float(n_images)
+            )
+        bundle = empty_bundle()
+        k, side, grazing = 0, 0, none_chosen()
         while k < n_images:
-            slope, nudge = (load(room.image_z[k]) - z_source) * per_length, LOOKS[look]
-            through, at_rims = walls_met(trace.plan, leg, n, z_root, slope, height, nudge)
-            share = share_here * fitting(through, trace.max_walls)
-            share, touching = share_of_look(look, share, touching, at_rims, 0.5)
-            if any_of(share > 0.0):
-                ray, heights = new_ray(trace.radio, slope, trace.image_bounces[k]), (z_root, nudge)
-                wave = sent(trace.radio, (ux, uy), ray)
-                wave = carried(trace.plan, trace.radio, leg, n, length, ray, heights, wave)
-                distance = length * ray.stretch
-                turned = phasor(trace.radio.cis, distance * (1.0 / wavelength))
+            slope = (load(workspace.image_z[k]) - z_transmitter) * per_length
+            offset = ONE_SIDED_OFFSETS_M[side]
+            n_walls, grazes = walls_met(building, leg, n, z_root, slope, offset)
+            weight = weight_here * validity_weight(n_walls, geometry.max_walls)
+            weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.5)
+            if any_of(weight > 0.0):
+                ray = new_ray(building, tables, slope, geometry.image_bounces[k])
+                wave = launch(tables, (ux, uy), ray.sin_elevation)
+                wave = propagate(building, tables, leg, n, length, ray, (z_root, offset), wave)
+                distance = length * ray.sec_elevation
+                turned = phasor(tables.cis, distance * (1.0 / wavelength))
                 size = (wavelength / (4.0 * math.pi)) / distance
-                gain = received(trace.radio, wave, arriving) * (turned * size)
-                counted(room, order + ray.bounces, share)
-                bundle = with_path(bundle, gain, distance - block.straight, share, arriving)
-                if record.used[0] >= 0:
-                    hit = (block.first, block.n)
-                    recorded(record, hit, -1, (-1, k, look), gain, share)
-            k, look = next_look(k, look, touching)
-        add_bundle(sums, block, bundle, room)
+                gain = receive(tables, wave, arriving) * (turned * size)
+                count_path(workspace, order + ray.bounces, weight)
+                bundle = with_path(bundle, gain, distance - block.straight, weight, arriving)
+                if collector.record.used[0] >= 0:
+                    at = (block.first, block.n)
+                    record_paths(collector.record, at, -1, (-1, k, side), gain, weight)
+            k, side = next_evaluation(k, side, grazing)
+        add_bundle(collector.sums, workspace, block.n, bundle)

@@ -1,4 +1,4 @@
-"""Beam trees from a level edge: a whole segment as the root.
+"""Beam trees from a horizontal edge: a whole segment as the root.
 
 In the frame of the edge (x along it, h away from it into the cell) a ray of the plan view is a
 point (u, m): it leaves at x = u with x = u + m h. The rays that pass between two corners form a
@@ -9,25 +9,20 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from raytrace.arrays import Floats, Int32s, Ints
+from raytrace.kernels.beam_hits import Hits, Targets
 from raytrace.kernels.beams import (
     BOUNCES,
     CELL,
     EDGE,
-    ITEMS,
     ORDER,
     PARENT,
-    REFLECTED,
     TRANSMITTED,
-    Hits,
-    Targets,
     Window,
-    copy_row,
-    enlarged,
-    leads_on,
+    link_child,
+    may_enter,
     most_children,
-    resized,
 )
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import (
@@ -42,13 +37,14 @@ from raytrace.kernels.lanes import (
     store,
     where,
 )
-from raytrace.kernels.plan_view import GRAZING_M, Floats, Ints, PlanView
+from raytrace.kernels.plan_view import GRAZING_M, PlanView
+from raytrace.kernels.rows import copy_row, enlarged, resized
 
 STEEPEST = 1e5
-"""Largest |m| of a ray that leaves a level edge."""
+"""Largest |m| of a ray that leaves a horizontal edge."""
 
 SLIVER_M = 1e-10
-"""Narrowest stretch of an edge that is followed [m]."""
+"""Narrowest interval of an edge that is traced [m]."""
 
 
 class StripTree(NamedTuple):
@@ -67,7 +63,7 @@ class StripTree(NamedTuple):
         (m, 2) corners (u [m], m [1]).
     """
 
-    link: NDArray[np.int32]
+    link: Int32s
     frame: Floats
     first: Ints
     rays: Floats
@@ -132,7 +128,7 @@ def clipped(rays: Floats, n: int, x: float, h: float, sign: float, out: Floats) 
 
 @jit(inline=True)
 def is_sliver(rays: Floats, n: int) -> bool:
-    """Whether a polygon of rays is too thin to be followed."""
+    """Whether a polygon of rays is too thin to be traced."""
     if n < 3:
         return True
     low = high = rays[0, 0]
@@ -146,7 +142,7 @@ def is_sliver(rays: Floats, n: int) -> bool:
 
 @jit(inner=True)
 def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, out: Floats) -> int:
-    """Clip beam i to the part that meets edge e; corners to `out`, return how many, 0 if none."""
+    """Clip beam i to the part that meets edge e; write corners to `out`, return how many."""
     n = tree.first[i + 1] - tree.first[i]
     copy_rays(tree.rays, tree.first[i], n, out, 0)
     ends = (view.ends[e, 0], view.ends[e, 1], view.ends[e, 2], view.ends[e, 3])
@@ -157,7 +153,7 @@ def through_edge(view: PlanView, tree: StripTree, i: int, e: int, work: Floats, 
 def between(frame: Floats, ends: Window, n: int, work: Floats, out: Floats) -> int:
     """Clip the n rays in `out` to those between two corners; return how many are left.
 
-    A polygon of almost no width could by rounding light an edge from behind; its mean ray tells.
+    By rounding, a polygon of almost no width could meet an edge from behind: its mean ray must not.
     """
     x1, h1 = in_frame(frame, ends[0], ends[1])
     x2, h2 = in_frame(frame, ends[2], ends[3])
@@ -198,26 +194,21 @@ def write_box(rays: Floats, length: float) -> None:
     rays[2, 1] = rays[3, 1] = STEEPEST
 
 
-PASSES, IS_MIRRORED, GOES_THROUGH = 0, 1, 2
-"""What a beam does at an edge."""
+PASSES, IS_MIRRORED, IS_TRANSMITTED = 0, 1, 2
+"""What becomes of a beam at an edge."""
 
 
 @jit(inner=True)
-def follow(
-    view: PlanView, tree: StripTree, i: int, n: int, e: int, way: int, corners: int, rays: Floats
+def add_child(
+    view: PlanView, tree: StripTree, i: int, n: int, e: int, how: int, corners: int, rays: Floats
 ) -> None:
-    """Make beam n the part of beam i that passes edge e, is mirrored there, or goes through."""
+    """Write beam n: the part of beam i that passes edge e, is mirrored there, or transmitted."""
     link, frame, first = tree.link, tree.frame, tree.first
-    copy_row(link, n, i)
+    link_child(view, link, i, n, e, how == IS_MIRRORED)
     copy_row(frame, n, i)
-    link[n, PARENT], link[n, EDGE] = i, e
-    link[n, REFLECTED] = 1 if way == IS_MIRRORED else 0
-    if view.profile[e] >= 0:
-        link[n, ITEMS] += 1
-    if way == IS_MIRRORED:
-        link[n, ORDER] += 1
+    if how == IS_MIRRORED:
         mirror_frame(frame[n], view.plane[e])
-    elif way == PASSES:
+    elif how == PASSES:
         link[n, CELL] = view.beyond[e]
     else:
         link[n, CELL] = view.cell_of[e]
@@ -233,11 +224,11 @@ def split_strip(
     tree: StripTree,
     i: int,
     n: int,
-    most: tuple[int, int],
-    room: tuple[Floats, Floats],
+    limits: tuple[int, int],
+    scratch: tuple[Floats, Floats],
 ) -> int:
-    """Write what becomes of beam i at the edges of its cell, from row n on; return the next row."""
-    work, out = room
+    """Write the children of beam i from row n on; return the next row."""
+    work, out = scratch
     link = tree.link
     cell = link[i, CELL]
     for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
@@ -246,41 +237,40 @@ def split_strip(
         corners = through_edge(view, tree, i, e, work, out)
         if corners == 0:
             continue
-        for way in (PASSES, IS_MIRRORED):
-            needed = max(link[i, BOUNCES], bounces[e, way])
-            possible = leads_on(link, i, view.beyond[e]) if way == 0 else view.profile[e] >= 0
-            if not possible or link[i, ORDER] + way + needed > most[0]:
+        for how in (PASSES, IS_MIRRORED):
+            required = max(link[i, BOUNCES], bounces[e, how])
+            possible = may_enter(link, i, view.beyond[e]) if how == 0 else view.profile[e] >= 0
+            if not possible or link[i, ORDER] + how + required > limits[0]:
                 continue
-            follow(view, tree, i, n, e, way, corners, out)
-            link[n, BOUNCES] = needed
+            add_child(view, tree, i, n, e, how, corners, out)
+            link[n, BOUNCES] = required
             n += 1
-        if link[i, TRANSMITTED] < most[1]:
-            n = transmit_strip(view, tree, i, n, e, room)
+        if link[i, TRANSMITTED] < limits[1]:
+            n = transmit_strip(view, tree, i, n, e, scratch)
     return n
 
 
 @jit(inner=True)
 def transmit_strip(
-    view: PlanView, tree: StripTree, i: int, n: int, e: int, room: tuple[Floats, Floats]
+    view: PlanView, tree: StripTree, i: int, n: int, e: int, scratch: tuple[Floats, Floats]
 ) -> int:
     """Write the beams that go through a full wall, from row n on; return the next row."""
-    work, out = room
+    work, out = scratch
     for k in range(view.behind_first[e], view.behind_first[e + 1]):
         f = view.behind[k]
         back = (view.ends[f, 2], view.ends[f, 3], view.ends[f, 0], view.ends[f, 1])
         corners = through_edge(view, tree, i, e, work, out)
         corners = between(tree.frame[i], back, corners, work, out)
-        if corners > 0 and leads_on(tree.link, i, int(view.cell_of[f])):
-            follow(view, tree, i, n, f, GOES_THROUGH, corners, out)
+        if corners > 0 and may_enter(tree.link, i, int(view.cell_of[f])):
+            add_child(view, tree, i, n, f, IS_TRANSMITTED, corners, out)
             n += 1
     return n
 
 
-@jit()
 def grow_strips(
-    view: PlanView, bounces: Ints, root: int, root_cell: int, most: tuple[int, int]
+    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: tuple[int, int]
 ) -> StripTree:
-    """All beams from one side of an edge, with at most so many reflections and transmissions.
+    """Grow all beams from one side of an edge.
 
     Parameters
     ----------
@@ -288,9 +278,17 @@ def grow_strips(
         As for `beams.grow_tree`.
     root, root_cell
         The edge, as seen from the cell that the beams go into.
-    most
+    limits
         Most reflections, and most full walls gone through.
     """
+    return StripTree(*grow_strip_arrays(view, bounces, root, root_cell, limits))
+
+
+@jit()
+def grow_strip_arrays(
+    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: tuple[int, int]
+) -> tuple[Int32s, Floats, Ints, Floats]:
+    """Arrays of `grow_strips`."""
     link = np.zeros((256, 8), np.int32)
     frame = np.empty((256, 7))
     first = np.zeros((257, 1), np.int64)
@@ -315,66 +313,75 @@ def grow_strips(
         while corners > len(out):
             work, out = enlarged(work), enlarged(out)
         tree = StripTree(link, frame, first[:, 0], rays)
-        n = split_strip(view, bounces, tree, i, n, most, (work, out))
+        n = split_strip(view, bounces, tree, i, n, limits, (work, out))
         i += 1
-    return StripTree(
-        resized(link, n), resized(frame, n), resized(first, n + 1)[:, 0], resized(rays, first[n, 0])
-    )
+    first_ray = resized(first, n + 1)[:, 0]
+    return resized(link, n), resized(frame, n), first_ray, resized(rays, first[n, 0])
 
 
-@jit()
 def hit_from_strip(
-    tree: StripTree, targets: Targets, beams: Ints, most: int
+    tree: StripTree, targets: Targets, beams: Ints, max_hits: int
 ) -> tuple[Hits, Floats, int]:
-    """Points that beams from a segment light.
+    """Find the points within beams from a segment.
 
     Parameters
     ----------
     tree, targets
         The beams and the points.
-    beams, most
-        Which beams, and how many hits are enough: the last beam is done with, though.
+    beams, max_hits
+        Which beams, and the number of hits after which no further beam is taken.
 
     Returns
     -------
     hits
-        Points and beams; the share is that of the point's cell.
+        Points and beams; the weight is that of the point in its cell.
     seen
-        (n, 4) the point as (x, h) in the edge's frame, and the stretch of the edge that sees it
+        (n, 4) the point as (x, h) in the edge's frame, and the interval of the edge visible from it
         [m].
     done
-        How many of the beams are done with.
+        How many of the beams were taken.
     """
-    pair, share = np.empty((1024, 2), np.int32), np.empty((1024, 1))
+    pair, weight, seen, done = hit_strip_arrays(tree, targets, beams, max_hits)
+    return Hits(pair, weight), seen, done
+
+
+@jit()
+def hit_strip_arrays(
+    tree: StripTree, targets: Targets, beams: Ints, max_hits: int
+) -> tuple[Int32s, Floats, Floats, int]:
+    """Arrays of `hit_from_strip`."""
+    pair, weight = np.empty((1024, 2), np.int32), np.empty((1024, 1))
     seen, rows = np.empty((1024, 4)), np.empty((4, WIDTH))
     n = done = 0
-    while done < len(beams) and n < most:
+    while done < len(beams) and n < max_hits:
         i = int(beams[done])
         done += 1
         cell, rays = tree.link[i, CELL], tree.rays[tree.first[i] : tree.first[i + 1]]
         last = targets.cell_points[cell + 1]
         for k in range(targets.cell_points[cell], last, WIDTH):
             x, h = in_frame(tree.frame[i], load(targets.x[k:]), load(targets.y[k:]))
-            low, high = stretch_through(rays, x, h)
-            lit = (high - low > SLIVER_M) & (h > GRAZING_M)
-            if not any_of(lit):
+            low, high = interval_through(rays, x, h)
+            visible = (high - low > SLIVER_M) & (h > GRAZING_M)
+            if not any_of(visible):
                 continue
-            for row, column in enumerate((x, h, where(lit, low, 0.0), where(lit, high, 0.0))):
+            low, high = where(visible, low, 0.0), where(visible, high, 0.0)
+            for row, column in enumerate((x, h, low, high)):
                 store(rows[row], column)
             if n + WIDTH > len(pair):
-                pair, share, seen = enlarged(pair), enlarged(share), enlarged(seen)
+                pair, weight, seen = enlarged(pair), enlarged(weight), enlarged(seen)
             for at in range(k, min(k + WIDTH, last)):
                 if rows[2, at - k] == rows[3, at - k]:
                     continue
-                pair[n, 0], pair[n, 1], share[n, 0] = targets.number[at], i, targets.share[at]
+                pair[n, 0], pair[n, 1] = targets.number[at], i
+                weight[n, 0] = targets.weight[at]
                 for column in range(4):
                     seen[n, column] = rows[column, at - k]
                 n += 1
-    return Hits(resized(pair, n), resized(share, n)[:, 0]), resized(seen, n), done
+    return resized(pair, n), resized(weight, n)[:, 0], resized(seen, n), done
 
 
 @jit(inline=True)
-def stretch_through(rays: Floats, x: Lanes, h: Lanes) -> tuple[Lanes, Lanes]:
+def interval_through(rays: Floats, x: Lanes, h: Lanes) -> tuple[Lanes, Lanes]:
     """Smallest and largest u of the rays of a polygon through points; empty if low > high."""
     low, high = lanes_of(1e300), lanes_of(-1e300)
     last = len(rays) - 1

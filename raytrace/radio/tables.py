@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fresnel
 
-from raytrace.kernels.field import Radio
+from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.utd import TRANSITION_MAX, TRANSITION_STEPS
 from raytrace.radio.antennas import (
     Antenna,
@@ -25,29 +25,23 @@ CIS_STEPS = 256
 ANTENNA_STEPS = 8192
 
 
-def make_radio(
+def field_tables(
     transmitter: Transmitter,
     slabs: Sequence[Slab],
     *,
-    height_m: float,
-    floor: int,
-    ceiling: int,
     receive_antenna: Antenna | None = None,
     through_walls: bool = False,
-) -> Radio:
-    """Tabulate everything of a trace that is not geometry."""
+) -> FieldTables:
+    """Tabulate materials, antennas and special functions at the transmitter's frequency."""
     turn = np.arange(CIS_STEPS + 1) * (2.0 * np.pi / CIS_STEPS)
-    return Radio(
+    return FieldTables(
         wavelength=transmitter.wavelength_m,
-        height=height_m,
-        floor=floor,
-        ceiling=ceiling,
         slab_rows=SLAB_TABLE_STEPS + 2,
-        slabs=slab_tables(slabs, transmitter.frequency_hz).reshape(-1, 4),
-        through=transmission_tables(slabs, transmitter.frequency_hz).reshape(-1, 4)
+        reflection=slab_tables(slabs, transmitter.frequency_hz).reshape(-1, 4),
+        transmission=transmission_tables(slabs, transmitter.frequency_hz).reshape(-1, 4)
         if through_walls
         else np.empty((0, 4)),
-        highest=highest_reflections(slabs, transmitter.frequency_hz).ravel(),
+        max_reflectance=max_reflectance(slabs, transmitter.frequency_hz).ravel(),
         transition=transition_table(),
         cis=np.column_stack([np.cos(turn), np.sin(turn)]),
         **_antennas(transmitter.antenna, receive_antenna or HalfWaveDipole()),
@@ -63,7 +57,7 @@ def _antennas(transmit: Antenna, receive: Antenna) -> dict[str, Any]:
             "receive": tables[1],
             "patterns": (np.empty((0, 4)), np.empty((0, 4))),
             "azimuths": 1,
-            "peak": float(np.prod([np.max(t**2) for t in tables])),
+            "peak_gain": float(np.prod([np.max(t**2) for t in tables])),
         }
     found = [np.stack(antenna_tables(a), axis=-1) for a in (transmit, receive)]
     return {
@@ -71,7 +65,7 @@ def _antennas(transmit: Antenna, receive: Antenna) -> dict[str, Any]:
         "receive": np.zeros(2),
         "patterns": tuple(np.ascontiguousarray(p).view(np.float64).reshape(-1, 4) for p in found),
         "azimuths": found[0].shape[1],
-        "peak": float(np.prod([(np.abs(p) ** 2).sum(axis=-1).max() for p in found])),
+        "peak_gain": float(np.prod([(np.abs(p) ** 2).sum(axis=-1).max() for p in found])),
     }
 
 
@@ -81,7 +75,7 @@ def antenna_table(antenna: Antenna) -> Floats:
     return np.append(amplitude, amplitude[-1])
 
 
-def highest_reflections(slabs: Sequence[Slab], frequency_hz: float) -> Floats:
+def max_reflectance(slabs: Sequence[Slab], frequency_hz: float) -> Floats:
     """Tabulate max(|R_te|^2, |R_tm|^2) over a cosine of incidence and all above (n, steps + 2)."""
     cos_i = np.append(np.linspace(0.0, 1.0, SLAB_TABLE_STEPS + 1), 1.0)
     rows: list[Floats] = []

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from raytrace.arrays import Floats
 from raytrace.constants import SPEED_OF_LIGHT
-from raytrace.kernels.tracing import COSINE, DETOUR, DETOUR_SQUARED, SINE, STRONGEST, Sums
+from raytrace.kernels.sums import COSINE, EXCESS, EXCESS_SQUARED, SINE, STRONGEST, Sums
 
 
 class LayerInfo(NamedTuple):
@@ -50,7 +50,7 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
     n_paths = sums.n_paths.sum(axis=1)
     reached = power > 0.0
     mean = moments / np.where(reached, power, 1.0)[:, None]
-    variance = np.maximum(mean[:, DETOUR_SQUARED] - mean[:, DETOUR] ** 2, 0.0)
+    variance = np.maximum(mean[:, EXCESS_SQUARED] - mean[:, EXCESS] ** 2, 0.0)
     focus = mean[:, COSINE] ** 2 + mean[:, SINE] ** 2
     strongest = moments[:, STRONGEST]
     rest = np.where(n_paths > 1.0, np.maximum(power - strongest, 0.0), 0.0)
@@ -59,7 +59,7 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
         "rss_coherent_dbm": _dbm(np.where(reached, np.abs(sums.field) ** 2, 0.0), power_dbm),
         "path_count": np.floor(n_paths + 0.5).astype(np.int64),
         "strongest_path_dbm": _dbm(strongest, power_dbm),
-        "mean_delay_s": np.where(reached, straight_m + mean[:, DETOUR], 0.0) / SPEED_OF_LIGHT,
+        "mean_delay_s": np.where(reached, straight_m + mean[:, EXCESS], 0.0) / SPEED_OF_LIGHT,
         "delay_spread_s": np.where(reached, np.sqrt(variance), 0.0) / SPEED_OF_LIGHT,
         "angular_spread": np.where(reached, np.sqrt(np.maximum(1.0 - focus, 0.0)), 0.0),
         "k_factor_db": _ratio_db(strongest, rest),

@@ -1,285 +1,295 @@
-"""The three families of paths: reflected only, over an upright edge, over a level edge.
+"""The path classes of an extruded building: reflected only, over a vertical, a horizontal edge."""
 
-Each family is a job: it grows its own beams, adds its paths to sums, and can write them out
-one by one.
-"""
-
-from collections.abc import Iterator
-from functools import cached_property
-from typing import Protocol
+from abc import ABC, abstractmethod
+from typing import Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from raytrace.geometry.edges import HorizontalEdge, VerticalEdge
-from raytrace.kernels.beams import ORDER, Hits, Tree, grow_tree, hit_points
-from raytrace.kernels.horizontal_edges import Rim, RimLegsIn, new_work, sum_level_edge
-from raytrace.kernels.path_points import level_points, reflection_points, upright_points
+from raytrace.arrays import Floats, Int8s, Ints
+from raytrace.geometry import edges
+from raytrace.kernels.beam_hits import Hits, hit_points, no_hits
+from raytrace.kernels.beams import ORDER, Tree, grow_tree
+from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.horizontal_edge_legs import (
+    HorizontalEdge,
+    HorizontalEdgeBeams,
+    ImagesIn,
+    new_edge_workspace,
+)
+from raytrace.kernels.horizontal_edges import sum_horizontal_edge
+from raytrace.kernels.path_points import (
+    horizontal_edge_points,
+    reflection_points,
+    vertical_edge_points,
+)
 from raytrace.kernels.plan_view import GRAZING_M
-from raytrace.kernels.reflections import sum_reflections
-from raytrace.kernels.strips import StripTree, edge_frame, grow_strips, hit_from_strip
-from raytrace.kernels.tracing import Record, Sums, new_room, no_record
-from raytrace.kernels.unfolding import most_items
-from raytrace.kernels.utd import new_wedge
-from raytrace.kernels.vertical_edges import Edge, LegsIn, legs_to_edge, sum_upright_edge
+from raytrace.kernels.records import Record, new_record, no_record
+from raytrace.kernels.reflections import ReflectionBeams, sum_reflections
+from raytrace.kernels.strips import edge_frame, grow_strips, hit_from_strip
+from raytrace.kernels.sums import Sums, new_sums
+from raytrace.kernels.unfolding import new_leg
+from raytrace.kernels.vertical_edge_legs import (
+    LegsIn,
+    VerticalEdge,
+    bounds_of_legs,
+    legs_to_edge,
+)
+from raytrace.kernels.vertical_edges import VerticalEdgeBeams, sum_vertical_edge
+from raytrace.kernels.wedge import new_wedge
+from raytrace.kernels.workspace import Collector, new_workspace
+from raytrace.results.paths import Paths
+from raytrace.solver.path_class import Evaluation, PathClass
 from raytrace.solver.setup import Tracing
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+HIT_BATCH = 1 << 17
+"""Hits that are found and evaluated in one batch, which bounds the memory of large maps."""
 
-HITS_AT_ONCE = 1 << 17
-"""Receivers in beams are looked up so many at a time, which bounds the memory of large maps."""
+ALL_HITS = 1 << 62
 
-
-class Family(Protocol):
-    """Some of the paths of a trace."""
-
-    def grow(self) -> int:
-        """Grow the beams, which `add_to` does else; return how many there are."""
-        ...
-
-    def add_to(self, sums: Sums, beams: Ints | None = None) -> None:
-        """Add the paths to sums, or only those of some of the beams."""
-        ...
-
-    def write_to(self, sums: Sums, record: Record) -> None:
-        """Add the paths to sums, and to a record as far as it has room."""
-        ...
-
-    def receivers_of(self, record: Record) -> NDArray[np.int64]:
-        """Receiver of each recorded path (n,)."""
-        ...
-
-    def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
-        """Write the points (n, most, 3) [m] and interactions (n, most - 2) of recorded paths."""
-        ...
+Beams = TypeVar("Beams", ReflectionBeams, VerticalEdgeBeams, HorizontalEdgeBeams)
 
 
-class Reflections:
-    """Line of sight and every sequence of reflections."""
+class _BeamClass(ABC, Generic[Beams]):
+    """A `PathClass` whose paths are found by beams from the transmitter or an edge."""
 
     def __init__(self, tracing: Tracing) -> None:
         self._tracing = tracing
+        self._kept: Beams | None = None
 
-    @cached_property
-    def _hits(self) -> Hits:
-        t = self._tracing
-        return all_hits(t, t.tree)
+    @abstractmethod
+    def _grow(self) -> Beams:
+        """Grow the beams; they have no hits yet."""
+
+    @abstractmethod
+    def _n_beams(self, beams: Beams) -> int:
+        """Count the beams that receivers are visible from."""
+
+    @abstractmethod
+    def _hit(self, beams: Beams, numbers: Ints, max_hits: int) -> tuple[Beams, int]:
+        """Find receivers within some of the beams; return how many of the beams were taken."""
+
+    @abstractmethod
+    def _evaluate(self, beams: Beams, tables: FieldTables, collector: Collector) -> None:
+        """Evaluate the paths of all hits."""
+
+    @abstractmethod
+    def _write_points(self, beams: Beams, record: Record, points: Floats, kinds: Int8s) -> None:
+        """Write points (n, most, 3) [m] and interactions (n, most - 2) of recorded paths."""
+
+    def _beams(self) -> Beams:
+        return self._grow() if self._kept is None else self._kept
+
+    def _new_sums(self) -> Sums:
+        geometry = self._tracing.geometry
+        return new_sums(len(geometry.receivers.xy), geometry.max_reflections)
 
     def grow(self) -> int:
-        """See `Family`; the beams of the source are there."""
-        return len(self._tracing.tree.link)
+        """See `PathClass`."""
+        self._kept = self._beams()
+        return self._n_beams(self._kept)
 
-    def add_to(self, sums: Sums, beams: Ints | None = None) -> None:
-        """See `Family`."""
-        for hits in hits_in_lots(self._tracing, self._tracing.tree, beams):
-            self._sum(hits, sums, no_record())
+    def sum_paths(self, evaluation: Evaluation, beams: Ints | None = None) -> Sums:
+        """See `PathClass`."""
+        grown, sums = self._beams(), self._new_sums()
+        collector = Collector(sums, no_record(), evaluation.min_power)
+        numbers = np.arange(self._n_beams(grown)) if beams is None else beams
+        while len(numbers):
+            batch, done = self._hit(grown, numbers, HIT_BATCH)
+            self._evaluate(batch, evaluation.tables, collector)
+            numbers = numbers[done:]
+        return sums
 
-    def write_to(self, sums: Sums, record: Record) -> None:
-        """See `Family`."""
-        self._sum(self._hits, sums, record)
+    def list_paths(self, evaluation: Evaluation) -> Paths:
+        """See `PathClass`; the paths are counted first, then recorded."""
+        grown = self._beams()
+        beams, _ = self._hit(grown, np.arange(self._n_beams(grown)), ALL_HITS)
+        record = new_record(0)
+        for _ in range(2):
+            record = new_record(int(record.used[0]))
+            collector = Collector(self._new_sums(), record, evaluation.min_power)
+            self._evaluate(beams, evaluation.tables, collector)
+        return self._paths(beams, record)
 
-    def _sum(self, hits: Hits, sums: Sums, record: Record) -> None:
-        trace, tree = self._tracing.trace, self._tracing.tree
-        room = new_room(trace.max_order, most_items(tree.link))
-        sum_reflections(trace, tree, hits, room, sums, record)
-
-    def receivers_of(self, record: Record) -> NDArray[np.int64]:
-        """See `Family`."""
-        return _receivers(self._hits, record)
-
-    def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
-        """See `Family`."""
-        trace, tree = self._tracing.trace, self._tracing.tree
-        reflection_points(trace, tree, self._hits, record, points, kinds)
+    def _paths(self, beams: Beams, record: Record) -> Paths:
+        n, config = len(record.gain), self._tracing.config
+        most = config.max_reflections + config.max_diffractions + config.max_transmissions
+        points, kinds = np.zeros((n, most + 2, 3)), np.zeros((n, most), np.int8)
+        self._write_points(beams, record, points, kinds)
+        length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
+        receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
+        return Paths(receiver, kinds, points, length, record.gain, record.weight)
 
 
-class OverVerticalEdge:
+class Reflections(_BeamClass[ReflectionBeams]):
+    """Line of sight and every sequence of reflections."""
+
+    def _grow(self) -> ReflectionBeams:
+        return ReflectionBeams(self._tracing.tree, no_hits())
+
+    def _n_beams(self, beams: ReflectionBeams) -> int:
+        return len(beams.tree.link)
+
+    def _hit(
+        self, beams: ReflectionBeams, numbers: Ints, max_hits: int
+    ) -> tuple[ReflectionBeams, int]:
+        hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits)
+        return beams._replace(hits=hits), done
+
+    def _evaluate(self, beams: ReflectionBeams, tables: FieldTables, collector: Collector) -> None:
+        geometry, leg = self._tracing.geometry, new_leg(beams.tree.link)
+        workspace = new_workspace(geometry.max_reflections)
+        sum_reflections(geometry, tables, beams, leg, workspace, collector)
+
+    def _write_points(
+        self, beams: ReflectionBeams, record: Record, points: Floats, kinds: Int8s
+    ) -> None:
+        leg = new_leg(beams.tree.link)
+        reflection_points(self._tracing.geometry, beams, leg, record, points, kinds)
+
+
+class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
     """Every path that one vertical edge diffracts."""
 
-    def __init__(self, tracing: Tracing, edge: VerticalEdge) -> None:
-        self._tracing = tracing
-        self._cells = edge.cells
-        self._vertex = edge.vertex
-        self._edge = Edge(
-            edge.x, edge.y, *self._heights(edge), edge.o_face_azimuth,
+    def __init__(self, tracing: Tracing, edge: edges.VerticalEdge) -> None:
+        super().__init__(tracing)
+        self._cells, self._vertex = edge.cells, edge.vertex
+        self._edge = VerticalEdge(
+            edge.x, edge.y, *_heights(edge, tracing.scene.height_m), edge.o_face_azimuth,
             new_wedge(edge.wedge_n, edge.o_material, edge.n_material),
         )  # fmt: skip
 
-    def _heights(self, edge: VerticalEdge) -> tuple[float, float]:
-        """Heights between which a path may cross; floor and ceiling are no ends of an edge."""
-        low = edge.z_low if edge.z_low > GRAZING_M else -1.0
-        height = self._tracing.scene.height_m
-        return low, edge.z_high if edge.z_high < height - GRAZING_M else height + 1.0
-
-    @cached_property
     def _legs_in(self) -> LegsIn:
         tree, corners = self._tracing.tree, self._tracing.corners
         mine = np.flatnonzero(corners.pair[:, 0] == self._vertex)
         mine = mine[np.argsort(tree.link[corners.pair[mine, 1], ORDER], kind="stable")]
-        beams, share = corners.pair[mine, 1], corners.share[mine]
-        return legs_to_edge(self._tracing.trace, tree, beams, share, self._edge)
+        beams, weight = corners.pair[mine, 1], corners.weight[mine]
+        return legs_to_edge(self._tracing.scene.view, tree, beams, weight, self._edge)
 
-    @cached_property
-    def _tree(self) -> Tree:
-        t, lowest = self._tracing, self._legs_in.order[:1].sum()
-        most = t.config.max_reflections - int(lowest), t.config.max_transmissions
-        return grow_tree(t.trace.plan, t.bounces, self._edge.x, self._edge.y, self._cells, most)
+    def _grow(self) -> VerticalEdgeBeams:
+        t, legs = self._tracing, self._legs_in()
+        tree = Tree(np.empty((0, 8), np.int32), np.empty((0, 6)))
+        if len(legs.order):
+            limits = (t.config.max_reflections - int(legs.order[0]), t.config.max_transmissions)
+            root = (self._edge.x, self._edge.y)
+            tree = grow_tree(t.scene.view, t.bounces, root, self._cells, limits)
+        return VerticalEdgeBeams(self._edge, legs, tree, no_hits())
 
-    @cached_property
-    def _hits(self) -> Hits:
-        return all_hits(self._tracing, self._tree)
+    def _n_beams(self, beams: VerticalEdgeBeams) -> int:
+        return len(beams.tree.link)
 
-    def grow(self) -> int:
-        """See `Family`."""
-        return len(self._tree.link) if len(self._legs_in.order) else 0
+    def _hit(
+        self, beams: VerticalEdgeBeams, numbers: Ints, max_hits: int
+    ) -> tuple[VerticalEdgeBeams, int]:
+        hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits)
+        return beams._replace(hits=hits), done
 
-    def add_to(self, sums: Sums, beams: Ints | None = None) -> None:
-        """See `Family`."""
-        if len(self._legs_in.order):
-            for hits in hits_in_lots(self._tracing, self._tree, beams):
-                self._sum(hits, sums, no_record())
+    def _evaluate(
+        self, beams: VerticalEdgeBeams, tables: FieldTables, collector: Collector
+    ) -> None:
+        geometry, leg, bounds = self._tracing.geometry, new_leg(beams.tree.link), np.empty(0)
+        if collector.min_power > 0.0:
+            bounds = bounds_of_legs(geometry, tables, beams.legs)
+        workspace = new_workspace(geometry.max_reflections)
+        sum_vertical_edge(geometry, tables, beams, bounds, leg, workspace, collector)
 
-    def write_to(self, sums: Sums, record: Record) -> None:
-        """See `Family`."""
-        if len(self._legs_in.order):
-            self._sum(self._hits, sums, record)
-
-    def _sum(self, hits: Hits, sums: Sums, record: Record) -> None:
-        trace, legs, tree = self._tracing.trace, self._legs_in, self._tree
-        room = new_room(trace.max_order, most_items(tree.link))
-        sum_upright_edge(trace, self._edge, legs, tree, hits, room, sums, record)
-
-    def receivers_of(self, record: Record) -> NDArray[np.int64]:
-        """See `Family`."""
-        return _receivers(self._hits, record)
-
-    def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
-        """See `Family`."""
-        trace, legs, tree = self._tracing.trace, self._legs_in, self._tree
-        upright_points(trace, self._edge, legs, tree, self._hits, record, points, kinds)
+    def _write_points(
+        self, beams: VerticalEdgeBeams, record: Record, points: Floats, kinds: Int8s
+    ) -> None:
+        leg = new_leg(beams.tree.link)
+        vertical_edge_points(self._tracing.geometry, beams, leg, record, points, kinds)
 
 
-class OverHorizontalEdge:
-    """Every path that leaves one side of a level edge (side 0 or 1 of its plan edges)."""
+def _heights(edge: edges.VerticalEdge, height_m: float) -> tuple[float, float]:
+    """Heights between which a path may cross; floor and ceiling do not end an edge."""
+    low = edge.z_low if edge.z_low > GRAZING_M else -1.0
+    return low, edge.z_high if edge.z_high < height_m - GRAZING_M else height_m + 1.0
 
-    def __init__(self, tracing: Tracing, edge: HorizontalEdge, side: int) -> None:
-        self._tracing = tracing
+
+class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
+    """Every path that leaves one side of a horizontal edge (side 0 or 1 of its plan edges)."""
+
+    def __init__(self, tracing: Tracing, edge: edges.HorizontalEdge, side: int) -> None:
+        super().__init__(tracing)
         self._near, self._far = edge.plan_edges[side], edge.plan_edges[1 - side]
-        self._rim = Rim(
-            edge_frame(tracing.trace.plan, self._near), edge.z, 1.0 if edge.wall_above else -1.0,
+        self._edge = HorizontalEdge(
+            edge_frame(tracing.scene.view, self._near), edge.z, 1.0 if edge.wall_above else -1.0,
             new_wedge(2.0, edge.material, edge.material),
         )  # fmt: skip
 
-    @cached_property
-    def _legs_in(self) -> RimLegsIn:
+    def _images_in(self) -> ImagesIn:
         t = self._tracing
-        x1, y1, x2, y2 = t.trace.plan.ends[self._near]
+        x1, y1, x2, y2 = t.scene.view.ends[self._near]
         length = np.hypot(x2 - x1, y2 - y1)
-        mine = np.flatnonzero(np.isin(t.rims[:, 0], (self._near, self._far)))
-        beams = t.rims[mine, 1]
+        mine = np.flatnonzero(np.isin(t.partial_walls[:, 0], (self._near, self._far)))
+        beams = t.partial_walls[mine, 1]
         order = np.argsort(t.tree.link[beams, ORDER], kind="stable")
         mine, beams = mine[order], beams[order]
-        stretch = t.stretches[mine]
-        turned = (t.rims[mine, 0] == self._far)[:, None]
-        stretch = np.where(turned, 1.0 - stretch[:, ::-1], stretch) * length
-        frame, image = self._rim.frame, t.tree.beam[beams]
-        return RimLegsIn(
+        interval = t.intervals[mine]
+        turned = (t.partial_walls[mine, 0] == self._far)[:, None]
+        interval = np.where(turned, 1.0 - interval[:, ::-1], interval) * length
+        frame, image = self._edge.frame, t.tree.beam[beams]
+        return ImagesIn(
             order=t.tree.link[beams, ORDER].astype(np.int64),
             beam=beams.astype(np.int64),
             x=frame[0] * image[:, 0] + frame[1] * image[:, 1] + frame[2],
             h=frame[3] * image[:, 0] + frame[4] * image[:, 1] + frame[5],
-            low=np.ascontiguousarray(stretch[:, 0]),
-            high=np.ascontiguousarray(stretch[:, 1]),
+            low=np.ascontiguousarray(interval[:, 0]),
+            high=np.ascontiguousarray(interval[:, 1]),
         )
 
-    @cached_property
-    def _strips(self) -> StripTree:
-        t, view = self._tracing, self._tracing.trace.plan
+    def _grow(self) -> HorizontalEdgeBeams:
+        t, view, images = self._tracing, self._tracing.scene.view, self._images_in()
         cell = int(np.searchsorted(view.cell_edges, self._near, side="right")) - 1
-        most = t.config.max_reflections - int(self._legs_in.order[0]), t.config.max_transmissions
-        return grow_strips(view, t.bounces, self._near, cell, most)
+        limits = (t.config.max_reflections - int(images.order[0]), t.config.max_transmissions)
+        strips = grow_strips(view, t.bounces, self._near, cell, limits)
+        return HorizontalEdgeBeams(self._edge, t.tree, images, strips, no_hits(), np.empty((0, 4)))
 
-    @cached_property
-    def _lit(self) -> tuple[Hits, Floats]:
-        beams = np.arange(len(self._strips.link))
-        return hit_from_strip(self._strips, self._tracing.targets, beams, ALL_HITS)[:2]
+    def _n_beams(self, beams: HorizontalEdgeBeams) -> int:
+        return len(beams.strips.link)
 
-    def grow(self) -> int:
-        """See `Family`."""
-        return len(self._strips.link)
+    def _hit(
+        self, beams: HorizontalEdgeBeams, numbers: Ints, max_hits: int
+    ) -> tuple[HorizontalEdgeBeams, int]:
+        targets = self._tracing.targets
+        hits, seen, done = hit_from_strip(beams.strips, targets, numbers, max_hits)
+        return beams._replace(hits=hits, seen=seen), done
 
-    def add_to(self, sums: Sums, beams: Ints | None = None) -> None:
-        """See `Family`."""
-        strips, targets = self._strips, self._tracing.targets
-        beams = np.arange(len(strips.link)) if beams is None else beams
-        while len(beams):
-            hits, seen, done = hit_from_strip(strips, targets, beams, HITS_AT_ONCE)
-            self._sum((hits, seen), sums, no_record())
-            beams = beams[done:]
+    def _evaluate(
+        self, beams: HorizontalEdgeBeams, tables: FieldTables, collector: Collector
+    ) -> None:
+        geometry = self._tracing.geometry
+        work = new_edge_workspace(geometry.max_reflections, beams.tree, beams.strips)
+        sum_horizontal_edge(geometry, tables, beams, work, collector)
 
-    def write_to(self, sums: Sums, record: Record) -> None:
-        """See `Family`."""
-        self._sum(self._lit, sums, record)
-
-    def _sum(self, lit: tuple[Hits, Floats], sums: Sums, record: Record) -> None:
-        trace, strips, source = self._tracing.trace, self._strips, self._source
-        work = new_work(trace.max_order, source[0], strips)
-        sum_level_edge(trace, self._rim, source, strips, lit, work, sums, record)
-
-    @property
-    def _source(self) -> tuple[Tree, RimLegsIn]:
-        return self._tracing.tree, self._legs_in
-
-    def receivers_of(self, record: Record) -> NDArray[np.int64]:
-        """See `Family`."""
-        return _receivers(self._lit[0], record)
-
-    def write_points(self, record: Record, points: Floats, kinds: NDArray[np.int8]) -> None:
-        """See `Family`."""
-        trace, strips, lit = self._tracing.trace, self._strips, self._lit
-        level_points(trace, self._rim, self._source, strips, lit, record, points, kinds)
+    def _write_points(
+        self, beams: HorizontalEdgeBeams, record: Record, points: Floats, kinds: Int8s
+    ) -> None:
+        geometry = self._tracing.geometry
+        work = new_edge_workspace(geometry.max_reflections, beams.tree, beams.strips)
+        horizontal_edge_points(geometry, beams, work, record, points, kinds)
 
 
-ALL_HITS = 1 << 62
+def _hits_of_tree(tracing: Tracing, tree: Tree, numbers: Ints, max_hits: int) -> tuple[Hits, int]:
+    return hit_points(tracing.scene.view, tree, tracing.targets, numbers, max_hits)
 
 
-def all_hits(tracing: Tracing, tree: Tree) -> Hits:
-    """Receivers in the beams of a tree."""
-    beams = np.arange(len(tree.link))
-    return hit_points(tracing.trace.plan, tree, tracing.targets, beams, ALL_HITS)[0]
+def path_classes(tracing: Tracing) -> list[PathClass]:
+    """Return the classes that together hold every path of a trace, each path once.
 
-
-def hits_in_lots(tracing: Tracing, tree: Tree, beams: Ints | None) -> Iterator[Hits]:
-    """Receivers in the beams of a tree, or in some of them, so many at a time."""
-    beams = np.arange(len(tree.link)) if beams is None else beams
-    while len(beams):
-        hits, done = hit_points(tracing.trace.plan, tree, tracing.targets, beams, HITS_AT_ONCE)
-        beams = beams[done:]
-        yield hits
-
-
-def _receivers(hits: Hits, record: Record) -> NDArray[np.int64]:
-    return hits.pair[record.key[: record.used[0], 0], 0].astype(np.int64)
-
-
-def all_families(tracing: Tracing) -> list[Family]:
-    """Return the families that together hold every path of a trace, each path once.
-
-    Edges that the source does not light are left out; the most lit ones come first, so that
-    threads have about the same to do.
+    Edges that the transmitter's beams do not meet are left out; those that most beams meet come
+    first, which balances the work of the threads.
     """
-    families: list[Family] = [Reflections(tracing)]
+    classes: list[PathClass] = [Reflections(tracing)]
     if not tracing.config.max_diffractions:
-        return families
-    view = tracing.trace.plan
-    lit = np.bincount(tracing.corners.pair[:, 0], minlength=int(view.vertex.max()) + 1)
-    rims = np.bincount(tracing.rims[:, 0], minlength=len(view.line))
-    upright = [(lit[e.vertex], OverVerticalEdge(tracing, e)) for e in tracing.scene.vertical_edges]
-    level = [
-        (rims[list(e.plan_edges)].sum(), OverHorizontalEdge(tracing, e, side))
-        for e in tracing.scene.horizontal_edges
+        return classes
+    scene = tracing.scene
+    at_vertex = np.bincount(tracing.corners.pair[:, 0], minlength=int(scene.view.vertex.max()) + 1)
+    at_wall = np.bincount(tracing.partial_walls[:, 0], minlength=len(scene.view.line))
+    vertical = [(at_vertex[e.vertex], OverVerticalEdge(tracing, e)) for e in scene.vertical_edges]
+    horizontal = [
+        (at_wall[list(e.plan_edges)].sum(), OverHorizontalEdge(tracing, e, side))
+        for e in scene.horizontal_edges
         for side in (0, 1)
     ]
-    by_legs = sorted([*upright, *level], key=lambda counted: -counted[0])
-    return families + [family for n_legs, family in by_legs if n_legs]
+    by_beams = sorted([*vertical, *horizontal], key=lambda counted: -counted[0])
+    return classes + [path_class for n_beams, path_class in by_beams if n_beams]

@@ -10,7 +10,7 @@ import pytest
 import raytrace.kernels
 import rssnav.kernels
 from raytrace.kernels import cache
-from raytrace.kernels.beams import grow_tree
+from raytrace.kernels.beams import grow_tree_arrays
 from raytrace.kernels.cache import KernelCache, cache_folder, sources_digest
 from raytrace.kernels.compiling import jit as tracer_jit
 from rssnav.kernels.compiling import jit as loop_jit
@@ -55,7 +55,7 @@ def test_moving_text_between_sources_changes_the_digest(sources) -> None:
 
 
 @pytest.mark.parametrize(
-    ("package", "kernel"), [(raytrace.kernels, grow_tree), (rssnav.kernels, learn)]
+    ("package", "kernel"), [(raytrace.kernels, grow_tree_arrays), (rssnav.kernels, learn)]
 )
 def test_kernels_are_kept_in_the_folder_of_their_sources(package, kernel) -> None:
     assert sources_digest(Path(package.__path__[0])) in str(kernel.stats.cache_path)

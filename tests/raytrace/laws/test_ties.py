@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 import floorplans
 from raytrace import HalfWaveDipole, Scene, TraceConfig, Transmitter
-from raytrace.kernels.tracing import Sums
+from raytrace.kernels.sums import Sums
 from raytrace.solver.accumulate import sum_paths
+from raytrace.solver.evaluation import evaluation_of
+from raytrace.solver.path_classes import path_classes
 from raytrace.solver.setup import prepare
 
 Floats = NDArray[np.float64]
@@ -45,7 +47,8 @@ class Case(NamedTuple):
         receivers = self.receivers @ solid.T + [*shift, 0.0]
         antenna = HalfWaveDipole(axis=tuple(solid @ self.axis))
         source = Transmitter((x, y, z), antenna=antenna)
-        return sum_paths(prepare(scene, source, receivers, self.limits, antenna))
+        classes = path_classes(prepare(scene, source.position, receivers, self.limits))
+        return sum_paths(classes, evaluation_of(scene.slabs, source, self.limits, antenna))
 
 
 def lattice(plan: floorplans.FloorPlan, step: float, z: float) -> Floats:

@@ -1,0 +1,90 @@
+"""Upper bounds on the power of paths, before their field is computed."""
+
+import math
+
+from raytrace.kernels.building import TraceGeometry
+from raytrace.kernels.compiling import jit
+from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.lanes import (
+    Lanes,
+    absolute,
+    floor,
+    gather_pairs1,
+    lanes_of,
+    load,
+    maximum,
+    minimum,
+    sqrt,
+    where,
+)
+from raytrace.kernels.unfolding import NORMAL, REFLECT_WALL, SURFACE, TYPE, Leg
+
+
+@jit(inline=True)
+def free_space(tables: FieldTables, length: Lanes) -> Lanes:
+    """Bound on the received fraction of the power over distances [m]."""
+    size = (tables.wavelength / (4.0 * math.pi)) / length
+    return size * size * tables.peak_gain
+
+
+@jit(inner=True, fast=True)
+def leg_bound(
+    geometry: TraceGeometry, tables: FieldTables, leg: Leg, n: int, length: Lanes, order: int
+) -> Lanes:
+    """Bound on the fraction of the power that the walls on legs reflect.
+
+    Parameters
+    ----------
+    geometry, tables
+        The geometry of the trace, and the materials.
+    leg, n, length
+        The legs, their interactions, their horizontal lengths [m].
+    order
+        Their reflections at walls; the remaining ones at floor and ceiling bound their slopes.
+    """
+    rise = (geometry.max_reflections - order + 1) * geometry.building.height
+    cosine = length / sqrt(length * length + rise * rise)
+    rows, bound = tables.slab_rows, lanes_of(1.0)
+    for k in range(n):
+        if leg.types[k, TYPE] == REFLECT_WALL:
+            at = absolute(load(leg.interactions[k, NORMAL])) * cosine * (rows - 2.0)
+            row = floor(maximum(minimum(at, rows - 2.0), 0.0))
+            row = row + leg.types[k, SURFACE] * float(rows)
+            reflectance, _ = gather_pairs1(tables.max_reflectance, row)
+            bound = bound * reflectance
+    return bound
+
+
+@jit(inner=True, fast=True)
+def wedge_bound(
+    geometry: TraceGeometry,
+    tables: FieldTables,
+    is_sheet: bool,
+    cosines: tuple[Lanes, Lanes],
+    spread: Lanes,
+    total: Lanes,
+    order: int,
+) -> Lanes:
+    """Bounds on diffracted powers, without the reflections at walls.
+
+    A term of a half plane has at most half the field of a free path as long, and at most
+    1 / (2 sqrt(pi) s) of it, s the argument of its transition function; a wedge has four.
+
+    Parameters
+    ----------
+    geometry, tables, is_sheet
+        The geometry of the trace, the antennas, and whether the wedge is a half plane.
+    cosines
+        Of half the angles to the two shadow boundaries.
+    spread, total, order
+        See `vertical_edges.Pair`, and the number of reflections at walls.
+    """
+    if not is_sheet:
+        return free_space(tables, total) * 4.0
+    rise = (geometry.max_reflections - order + 1) * geometry.building.height
+    cosine = total / sqrt(total * total + rise * rise)
+    amplitude = lanes_of(0.0)
+    for half in cosines:
+        s = (2.0 * math.sqrt(math.pi)) * spread * sqrt(cosine) * absolute(half)
+        amplitude = amplitude + where(s < 2.0, lanes_of(0.5), 1.0 / s)
+    return amplitude * amplitude * free_space(tables, total)

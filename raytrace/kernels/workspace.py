@@ -1,0 +1,115 @@
+"""Working arrays of the kernels, and the totals that they add to."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from raytrace.arrays import Floats, Ints
+from raytrace.kernels.compiling import jit
+from raytrace.kernels.lanes import WIDTH, Lanes, any_of, lane, lanes_of, load, store, where
+from raytrace.kernels.records import Record
+from raytrace.kernels.sums import EXCESS, STRONGEST, Bundle, Sums
+
+
+class Collector(NamedTuple):
+    """What a kernel adds the paths to.
+
+    Attributes
+    ----------
+    sums, record
+        Sums over paths, and single paths.
+    min_power
+        Paths whose power is known to be below this are left out [fraction of the transmitted].
+    """
+
+    sums: Sums
+    record: Record
+    min_power: float
+
+
+class Workspace(NamedTuple):
+    """Working arrays for eight receivers.
+
+    Attributes
+    ----------
+    receivers
+        (8,) their numbers.
+    levels, image_z
+        (8,), (2 max_reflections + 1, 8) which of the receiver heights they are at, and its images
+        in floor and ceiling [m].
+    counts
+        (max_reflections + 1, 8) paths to them by reflections.
+    rows
+        (8, 8) scratch.
+    """
+
+    receivers: Ints
+    levels: Ints
+    image_z: Floats
+    counts: Floats
+    rows: Floats
+
+
+def new_workspace(max_reflections: int) -> Workspace:
+    """Working arrays for paths of that many reflections."""
+    return Workspace(
+        np.zeros(WIDTH, np.int64),
+        np.full(WIDTH, -1, np.int64),
+        np.empty((2 * max_reflections + 1, WIDTH)),
+        np.empty((max_reflections + 1, WIDTH)),
+        np.empty((8, WIDTH)),
+    )
+
+
+@jit(inline=True)
+def count_path(workspace: Workspace, order: int, weight: Lanes) -> None:
+    """Count a path of that many reflections to each receiver."""
+    store(workspace.counts[order], load(workspace.counts[order]) + weight)
+
+
+@jit(inline=True)
+def add_bundle(sums: Sums, workspace: Workspace, n: int, bundle: Bundle) -> None:
+    """Add what arrives at the first n receivers of a block to the sums."""
+    total = lanes_of(0.0)
+    for k in range(len(workspace.counts)):
+        total = total + load(workspace.counts[k])
+    if not any_of(total > 0.0):
+        return
+    rows = workspace.rows
+    for k, part in enumerate(bundle):
+        store(rows[k], part)
+    for j in range(n):
+        r = workspace.receivers[j]
+        sums.field[r] += complex(rows[0, j], rows[1, j])
+        sums.power[r] += rows[2, j]
+        moments = sums.moments[r]
+        for k in range(EXCESS, STRONGEST):
+            moments[k] += rows[3 + k, j]
+        moments[STRONGEST] = max(moments[STRONGEST], rows[7, j])
+        for k in range(len(workspace.counts)):
+            sums.n_paths[r, k] += workspace.counts[k, j]
+
+
+@jit(inner=True)
+def apply_power_threshold(
+    collector: Collector, workspace: Workspace, bound: Lanes, weight: Lanes, n_paths: float
+) -> Lanes:
+    """Set the weights of paths below the power threshold to 0 and record their bounds.
+
+    Parameters
+    ----------
+    collector, workspace
+        The threshold and the sums, and the receivers.
+    bound, weight, n_paths
+        Bounds on the powers, the paths' weights, and how many there are at each receiver.
+    """
+    min_power, sums = collector.min_power, collector.sums
+    for j in range(WIDTH):
+        power, left = lane(bound, j), n_paths * lane(weight, j)
+        if power < min_power and left > 0.0:
+            sums.left_out[workspace.receivers[j]] += left * power
+            if math.isinf(min_power):
+                level = int(-10.0 * math.log10(max(power, 1e-39)))
+                sums.bins[max(level, 0)] += left
+    return where(bound < min_power, 0.0, weight)
