@@ -6,8 +6,8 @@
 (0.0, 0.0, 12.0, 9.0)
 
 A `FloorPlan` is one storey: straight walls with openings, flat floor and ceiling, a material each,
-the radio source and the start of a search. `FloorPlan.to_mesh` makes it a `trimesh` of sheets with
-a material a face, `FloorPlan.solid_segments` tells where it is solid at a height, and
+the transmitter (`source`) and the start of a search. `FloorPlan.to_mesh` builds a `trimesh` of
+sheets with a material per face, `FloorPlan.solid_segments` returns what is solid at a height, and
 `floorplans.pictures.plan_view` draws it. Lengths are in metres, z is the height above the floor.
 """
 

@@ -1,4 +1,4 @@
-"""The one error this package raises for a plan that cannot be used."""
+"""The error this package raises for a plan that cannot be used."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def format_place(place: Place) -> str:
 
 
 def unknown_name(kind: str, name: str, known: tuple[str, ...]) -> str:
-    """Say that a name is unknown, which known name is near it, and list the known ones.
+    """Describe an unknown name: a similar known one, and the list of known ones.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Where on the Earth a plan lies, and the way between its metres and degrees."""
+"""Where on the Earth a plan lies, and the conversion between its metres and degrees."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class GeoOrigin:
-    """The place and the turn of a plan's axes on the WGS 84 ellipsoid.
+    """Position and rotation of a plan's axes on the WGS 84 ellipsoid.
 
     Attributes
     ----------
@@ -35,8 +35,8 @@ class GeoOrigin:
     def to_plan(self, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
         """Project (longitude, latitude) [degrees] to (x, y) of the plan [m].
 
-        The projection is azimuthal equidistant about the origin: lengths from there are true, and
-        others are within 1e-6 of true up to 10 km away.
+        The projection is azimuthal equidistant about the origin: lengths from there are exact, and
+        others within a relative error of 1e-6 up to 10 km away.
 
         Parameters
         ----------
@@ -50,7 +50,7 @@ class GeoOrigin:
         return np.column_stack([east, north]) @ _turn(self.rotation_deg)
 
     def to_degrees(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Turn (x, y) of the plan [m] into (longitude, latitude) [degrees], both (n, 2)."""
+        """Convert (x, y) of the plan [m] to (longitude, latitude) [degrees], both (n, 2)."""
         east, north = (points @ _turn(self.rotation_deg).T).T
         return np.column_stack(self._transformer.transform(east, north, direction="INVERSE"))
 
@@ -70,14 +70,14 @@ def check_origin(origin: GeoOrigin) -> None:
 
 
 def _turn(angle_deg: float) -> NDArray[np.float64]:
-    """Matrix that takes rows (east, north) to rows (x, y) of axes turned by an angle."""
+    """Matrix that maps rows (east, north) to rows (x, y) of rotated axes."""
     c, s = cos(radians(angle_deg)), sin(radians(angle_deg))
     return np.array([[c, -s], [s, c]])
 
 
 @cache
 def _transformer(longitude_deg: float, latitude_deg: float) -> Transformer:
-    from pyproj import Transformer  # costs a tenth of a second, and few plans need it
+    from pyproj import Transformer  # takes 0.1 s to import, and few plans need it
 
     centre = f"+lon_0={longitude_deg:.17g} +lat_0={latitude_deg:.17g}"
     local = f"+proj=aeqd {centre} +ellps=WGS84 +units=m"

@@ -64,7 +64,7 @@ def load(plan: str | Path) -> FloorPlan:
 
 
 def read_text(plan: str | Path) -> tuple[str, str]:
-    """Return the text of a built-in plan or a file, and what messages call it; see `load`."""
+    """Return the text of a built-in plan or a file, and its name in messages; see `load`."""
     if plan in builtin_names():
         file = resources.files("floorplans") / "plans" / f"{plan}.toml"
         return file.read_text(encoding="utf-8"), file.name
@@ -87,7 +87,7 @@ def loads(text: str, *, origin: str = "<text>") -> FloorPlan:
     ----------
     text : str
     origin : str
-        What messages call the text, such as the name of its file.
+        Name of the text in messages, such as its file's.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def loads(text: str, *, origin: str = "<text>") -> FloorPlan:
 
 
 def loads_unchecked(text: str, *, origin: str = "<text>") -> PlanFile:
-    """Read a plan from TOML text that may describe an impossible building.
+    """Read a plan from TOML text without checking the building it describes.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def _parse(text: str, origin: str) -> dict[str, object]:
 
 
 def from_data(data: Mapping[str, object], *, origin: str = "<data>") -> FloorPlan:
-    """Make a plan of the keys and values of its TOML file; raise `PlanError` as `loads` does."""
+    """Create a plan from the keys and values of its TOML file; see `loads` for errors."""
     try:
         return _read_plan(Table(data, PLAN_KEYS))
     except PlanError as error:
@@ -205,10 +205,10 @@ def _read_origin(table: Table) -> GeoOrigin | None:
 
 def _ring(points: Corners, place: Place) -> Corners:
     if len(points) < 4:
-        raise PlanError("expected at least three corners, then the first one again", place, points)
+        raise PlanError("expected at least three corners and the first one again", place, points)
     if points[0] != points[-1]:
         raise PlanError(
-            f"{format_place(place)} is not closed: repeat the first point {list(points[0])}",
+            f"{format_place(place)} is not closed; repeat the first point {list(points[0])}",
             (*place, len(points) - 1),
             points[-1],
         )
@@ -216,7 +216,7 @@ def _ring(points: Corners, place: Place) -> Corners:
 
 
 def _layers_m(material: str | None, own: Own, otherwise: float | None) -> float | None:
-    """Thickness of a plan's own layered material [m], or another value for any other material."""
+    """Thickness of a plan's own layered material [m]; `otherwise` for any other material."""
     if material is None or material not in own:
         return otherwise
     layers_m = own[material].thickness_m
@@ -236,10 +236,10 @@ def _read_wall(table: Table, defaults: Table, ceiling_m: float, own: Own) -> lis
     lengths = [dist(start, end) for start, end in pairwise(points)]
     whole = Wall((0.0, 0.0), (sum(lengths), 0.0), material, thickness_m, height_m, tuple(openings))
     check_openings(whole, own, table.place)
-    shares = _share_out(openings, lengths, points, table.place)
+    by_piece = _distribute_openings(openings, lengths, points, table.place)
     return [
-        Wall(start, end, material, thickness_m, height_m, share)
-        for (start, end), share in zip(pairwise(points), shares, strict=True)
+        Wall(start, end, material, thickness_m, height_m, own_openings)
+        for (start, end), own_openings in zip(pairwise(points), by_piece, strict=True)
     ]
 
 
@@ -257,12 +257,12 @@ def _read_opening(table: Table, own: Own) -> Opening:
     )
 
 
-def _share_out(
+def _distribute_openings(
     openings: list[Opening], lengths: list[float], points: list[Point], place: Place
 ) -> list[tuple[Opening, ...]]:
-    """Give each straight piece of a polyline its openings, with offsets from the piece's start."""
+    """Assign openings to the pieces of a polyline, with offsets from each piece's start."""
     begins = list(accumulate(lengths, initial=0.0))
-    shares: list[list[Opening]] = [[] for _ in lengths]
+    by_piece: list[list[Opening]] = [[] for _ in lengths]
     for index, opening in enumerate(openings):
         middle = opening.offset_m + opening.width_m / 2
         piece = max(i for i in range(len(lengths)) if begins[i] <= middle)
@@ -276,8 +276,8 @@ def _share_out(
                     (*place, "openings", index, "offset_m"),
                     opening.offset_m,
                 )
-        shares[piece].append(_moved(opening, begins[piece]))
-    return [tuple(share) for share in shares]
+        by_piece[piece].append(_moved(opening, begins[piece]))
+    return [tuple(openings) for openings in by_piece]
 
 
 def _moved(opening: Opening, begin_m: float) -> Opening:

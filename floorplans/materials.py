@@ -1,8 +1,8 @@
 """The materials a plan may name, those of its own, and the colour each is drawn in.
 
 The built-in names are those of Table 3 of Recommendation ITU-R P.2040, in lower case, and a few
-that need no table; their physics belongs to the tracer. The colours stay apart under the common
-colour-vision deficiencies because they differ in lightness as well as in hue.
+that need no table; their physics belongs to the tracer. The colours differ in lightness as well as
+in hue, so that they stay distinguishable under common colour-vision deficiencies.
 """
 
 from collections.abc import Mapping, Sequence
@@ -46,10 +46,10 @@ MATERIAL_EDITIONS = ("P.2040-1", "P.2040-2", "P.2040-3", "P.2040-4")
 """Editions of ITU-R P.2040 that a plan may take the built-in materials from."""
 
 OWN_COLOUR = "#8463a3"
-"""Colour of a plan's own material that gives none."""
+"""Colour of a plan's own material without one."""
 
 NOT_IN_LAYERS = ("perfect_conductor", "absorber")
-"""Built-in materials that have no inside."""
+"""Built-in materials that no wave enters."""
 
 
 class MaterialLayer(NamedTuple):
@@ -61,14 +61,14 @@ class MaterialLayer(NamedTuple):
 
 @dataclass(frozen=True)
 class PlanMaterial:
-    """A material that a plan brings along: a dielectric of its own, or layers of others.
+    """A plan's own material: a dielectric, or layers of other materials.
 
     Attributes
     ----------
     name : str
-        What walls call it.
+        Name by which walls refer to it.
     a, b, c, d : float
-        Relative permittivity ``a f^b`` and conductivity ``c f^d`` [S/m], f in GHz; of no meaning
+        Relative permittivity ``a f^b`` and conductivity ``c f^d`` [S/m], f in GHz; unused
         where there are layers.
     layers : tuple of MaterialLayer
         Built-in dielectrics or the plan's own, one behind the other; empty for a dielectric.
@@ -86,12 +86,12 @@ class PlanMaterial:
 
     @property
     def thickness_m(self) -> float | None:
-        """Of all layers [m]; None for a dielectric, of which walls may have any thickness."""
+        """Of all layers [m]; None for a dielectric, whose thickness the wall states."""
         return sum(layer.thickness_m for layer in self.layers) if self.layers else None
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether both sides are alike, as those of a wall must be."""
+        """Whether both sides are the same, as for a wall they must be."""
         return self.layers == self.layers[::-1]
 
 
@@ -165,7 +165,7 @@ def check_material(name: str, place: Place, own: Own = MappingProxyType({})) -> 
 def check_slab(
     name: str, thickness_m: float, own: Own, place: Place, key: str = "", *, is_wall: bool = False
 ) -> None:
-    """Check that a sheet's material is known, and that its thickness and sides suit it.
+    """Check that a sheet's material is known and fits its thickness and position.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def check_slab(
     place
         Of the sheet's table, for the message.
     key
-        What stands before ``material`` and ``thickness_m`` in the names of the keys.
+        Prefix of ``material`` and ``thickness_m`` in the names of the keys.
     is_wall
         Whether waves meet it from both sides.
 
@@ -191,14 +191,14 @@ def check_slab(
     layers_m = own[name].thickness_m
     if layers_m is not None and abs(thickness_m - layers_m) > 1e-6:
         raise PlanError(
-            f"the layers of {name} are {layers_m:g} m thick together; give that, or leave it out",
+            f"the layers of {name} are {layers_m:g} m thick in total; give that, or leave it out",
             (*place, f"{key}thickness_m"),
             thickness_m,
         )
     if is_wall and not own[name].is_symmetric:
         raise PlanError(
-            "a wall is one sheet seen from both sides, and these layers differ from side to side; "
-            "make them symmetric (a floor or ceiling may have any)",
+            "a wall is one sheet met from both sides, and these layers are not symmetric; "
+            "make them symmetric (floors and ceilings need not be)",
             at,
             name,
         )

@@ -1,8 +1,8 @@
-"""A plan as a mesh of sheets, a material a face.
+"""A plan as a mesh of sheets with a material per face.
 
 One wall is one double-sided sheet on its centre line; its thickness is in its material. A pair of
-faces a wall's thickness apart would hold rays between them. Sheets are cut around openings, and
-no two triangles share a vertex, so that a vertex has one colour and one normal in every format.
+faces a wall's thickness apart would trap rays between them. Sheets are cut around openings. No two
+triangles share a vertex, so that a vertex has one colour and one normal in every format.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ class WallMesh:
     ----------
     mesh : trimesh.Trimesh
         Walls in the plan's order, then floor and ceiling; coordinates in metres, z up. Floor and
-        ceiling face the room; which side of a wall is its front has no meaning.
+        ceiling face the room; the front side of a wall has no meaning.
     face_material : (n_faces,) int64
         Index into `materials`.
     materials : tuple of SheetMaterial
-        All different ones, in order of first use.
+        Distinct ones, in order of first use.
     """
 
     mesh: trimesh.Trimesh
@@ -87,7 +87,7 @@ def _sheets(plan: UncheckedPlan) -> Iterator[tuple[SheetMaterial, Triangles]]:
 
 
 def panel_corners(wall: Wall, panel: Panel) -> NDArray[np.float64]:
-    """Corners of a wall's panel, in turn from its lower corner nearest to the wall's start.
+    """Corners of a wall's panel, in order from the lower corner nearest to the wall's start.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def _panel_triangles(wall: Wall, panel: Panel) -> Triangles:
 
 
 def slab_triangles(outline: Polygon, z: float) -> Triangles:
-    """Triangles of a flat slab that face upwards; only the outline's own corners are used."""
+    """Triangles of a floor slab that face upwards; their vertices are the outline's corners."""
     parts = shapely.get_parts(shapely.constrained_delaunay_triangles(outline))
     rings = [shapely.get_coordinates(shapely.orient_polygons(part))[:3] for part in parts]
     plan_view = np.stack(rings)

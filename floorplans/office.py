@@ -1,4 +1,4 @@
-"""Generated office buildings of any size, to measure how time and memory grow with a plan."""
+"""Generated office buildings of any size, to measure how time and memory scale with a plan."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -30,24 +30,24 @@ def generate_office(
 ) -> FloorPlan:
     """Generate an office: rows of rooms, a corridor beside each row and one in the west.
 
-    Every room has a door to the corridor south of it and a door to its eastern neighbour, the last
-    room of a row a window instead.
+    Every room has a door to the corridor south of it and a door to its eastern neighbour; the last
+    room of a row has a window instead.
 
     Parameters
     ----------
     rooms_x, rooms_y : int
-        Rooms of a row, and rows; at least 1 each.
+        Rooms per row, and rows; at least 1 each.
     room_m : (float, float)
         Width and depth of a room [m], at least 2 x 2.
     height_m : float
         From floor to ceiling [m], at least 2.4.
     courtyard : bool
-        Whether the room in the middle is a courtyard, which is no part of the storey.
+        Whether the middle room is a courtyard, which is not part of the storey.
 
     Returns
     -------
     FloorPlan
-        Of rooms_x * rooms_y rooms and two openings a room. 15 x 10 rooms are 150 rooms and 300
+        With rooms_x * rooms_y rooms and two openings per room. 15 x 10 rooms are 150 rooms and 300
         openings on 152 m x 90 m.
 
     Raises

@@ -16,7 +16,7 @@ from floorplans.unchecked import UncheckedPlan
 class FloorPlan(UncheckedPlan):
     """One storey with flat floor and ceiling, and everything an experiment on it needs.
 
-    A plan that exists is usable: making one runs all checks of `floorplans.checks`. Two plans are
+    A plan that exists is usable: creating one runs all checks of `floorplans.checks`. Two plans are
     equal when all their numbers and names are.
 
     Attributes
@@ -33,17 +33,18 @@ class FloorPlan(UncheckedPlan):
     floor_material, ceiling_material : str
         Of `floorplans.MATERIALS`, or a name of `materials`.
     source : (float, float, float)
-        Where the radio source lies, (x, y, z) [m].
+        Where the transmitter is, (x, y, z) [m].
     start : (float, float)
         The cell centre (x, y) a search begins at [m].
     floor_thickness_m, ceiling_thickness_m : float
-        Thickness of the slabs [m].
+        Of the floor slabs [m].
     origin : GeoOrigin or None
-        Where on the Earth the plan lies; None where that is not known.
+        Where on the Earth the plan lies; None if unknown.
     materials : tuple of PlanMaterial
-        The plan's own, that walls, fillings, floor and ceiling may name beside the built-in ones.
+        The plan's own, which walls, fillings, floor and ceiling may name besides the built-in ones.
     material_edition : str or None
-        Of `floorplans.MATERIAL_EDITIONS`, for the built-in materials; None leaves it to the tracer.
+        Of `floorplans.MATERIAL_EDITIONS`, for the built-in materials; by default the
+        tracer's choice.
 
     Raises
     ------

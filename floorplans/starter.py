@@ -1,4 +1,4 @@
-"""A starter plan of any size: TOML text with comments, to be changed by hand."""
+"""A starter plan of any size: commented TOML text to edit by hand."""
 
 import json
 from importlib import resources

@@ -56,8 +56,7 @@ class UncheckedPlan:
         Parameters
         ----------
         height_m : float
-            Above the floor [m]. At exactly the height of a sill, head or top, what touches that
-            height counts as solid.
+            Above the floor [m]. What ends exactly at this height counts as solid.
 
         Returns
         -------
@@ -79,7 +78,7 @@ class UncheckedPlan:
         return np.array(segments, dtype=np.float64).reshape(-1, 2, 2)
 
     def layer_heights(self) -> tuple[float, ...]:
-        """One height [m] in each horizontal layer within which the plan view stays the same."""
+        """One height [m] in each horizontal layer of constant plan view."""
         edges = {0.0, self.height_m} | {wall.height_m for wall in self.walls}
         edges |= {z for wall in self.walls for o in wall.openings for z in (o.sill_m, o.head_m)}
         return tuple((low + high) / 2 for low, high in pairwise(sorted(edges)))
@@ -101,11 +100,11 @@ class PlanFile:
 
     @classmethod
     def of(cls, plan: UncheckedPlan) -> PlanFile:
-        """Number the walls of a plan that is in no file."""
+        """Number the walls of a plan that has no file."""
         return cls(plan, (1,) * len(plan.walls))
 
     def place_in_file(self, place: Place) -> Place:
-        """Turn the index of a straight wall into that of the file's polyline it is a piece of."""
+        """Replace the index of a straight wall by that of the polyline it belongs to."""
         if len(place) < 2 or place[0] != "walls":
             return place
         tables = [table for table, count in enumerate(self.piece_counts) for _ in range(count)]

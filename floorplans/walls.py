@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 OpeningKind = Literal["door", "window", "passage"]
 
 TOLERANCE_M = 1e-6
-"""Two points nearer than this are the same point [m]."""
+"""Points nearer than this are the same point [m]."""
 
 Point = tuple[float, float]
 Interval = tuple[float, float]
@@ -32,7 +32,7 @@ class Opening:
     sill_m, head_m : float
         Heights of the lower and the upper edge above the floor [m].
     kind : {"door", "window", "passage"}
-        How it is drawn; it has no part in the geometry.
+        How it is drawn; the geometry does not depend on it.
     material : str or None
         What fills it; None leaves it open.
     thickness_m : float or None
@@ -66,7 +66,7 @@ class Wall:
     thickness_m, height_m : float
         Thickness, and height above the floor [m].
     openings : tuple of Opening
-        They may lie over each other (a window above a door) but not overlap.
+        They may lie above each other (a window above a door) but not overlap.
     """
 
     start: Point
@@ -84,7 +84,7 @@ class Wall:
     def point_at(self, s: float) -> Point:
         """Plan-view point (x, y) [m] at the distance `s` [m] from the start.
 
-        Exact at both ends, and wherever the wall runs along an axis and the numbers are whole.
+        Exact at both ends, and on walls along an axis with integer coordinates.
         """
         if s == self.length_m:
             return self.end
@@ -107,16 +107,16 @@ class Panel(NamedTuple):
 
 
 def panels(wall: Wall) -> tuple[Panel, ...]:
-    """Cut what is solid of a wall into rectangles that do not overlap.
+    """Divide the solid parts of a wall into rectangles that do not overlap.
 
-    The wall itself comes first, as columns between the sides of its openings: whole where there is
-    no opening, sill and lintel where there is one. The fillings of openings follow, each in one
-    piece.
+    The wall comes first, in columns between the sides of its openings: full height where there is
+    no opening, sill and lintel where there is one. The fillings of openings follow, one panel
+    each.
 
     Returns
     -------
     tuple of Panel
-        Their areas add up to the wall's area minus that of its unfilled openings.
+        Their total area is the wall's area minus that of its unfilled openings.
     """
     return (*_wall_panels(wall), *_fillings(wall))
 
@@ -141,25 +141,25 @@ def _fillings(wall: Wall) -> Iterator[Panel]:
 
 
 def solid_intervals(wall: Wall, height_m: float) -> list[Interval]:
-    """Where along a wall it is solid at a height; an edge at exactly that height counts as solid.
+    """Where a wall is solid at a height; an edge at exactly that height counts as solid.
 
     Returns
     -------
     list of (float, float)
-        Disjoint intervals of s [m], in rising order, touching ones made one.
+        Disjoint intervals of s [m], in ascending order, touching ones merged.
     """
     spans = [(p.s_min, p.s_max) for p in panels(wall) if p.z_min <= height_m <= p.z_max]
     return _union(spans)
 
 
 def closed_intervals(wall: Wall) -> list[Interval]:
-    """Where along a wall no unfilled opening is, at any height, as intervals of s [m]."""
+    """Where a wall has no unfilled opening at any height, as intervals of s [m]."""
     unfilled = ((o.offset_m, o.end_m) for o in wall.openings if o.material is None)
     return list(complement(unfilled, wall.length_m))
 
 
 def complement(intervals: Iterable[Interval], end: float) -> Iterator[Interval]:
-    """Yield what a set of intervals leaves of [0, end], pieces shorter than 1e-6 m left out."""
+    """Yield the complement of intervals in [0, end], without pieces shorter than 1e-6 m."""
     position = 0.0
     for low, high in [*_union(intervals), (end, end)]:
         if low - position >= TOLERANCE_M:

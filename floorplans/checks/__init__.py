@@ -1,1 +1,1 @@
-"""What makes a plan unusable, and what is doubtful about one that can be used."""
+"""Errors that make a plan unusable, and warnings about plans that can be used."""

@@ -1,8 +1,7 @@
-"""What is wrong or doubtful about a plan: all of it, each with its place.
+"""All errors and warnings of a plan, each with its place.
 
-Errors make a plan unusable and are those of `floorplans.checks.plan`; warnings are what a drawing
-or a slip of the hand often leaves and nobody means: walls that almost meet, slivers, a wall drawn
-twice, a room without a door.
+Errors make a plan unusable; they are those of `floorplans.checks.plan`. Warnings are common drawing
+mistakes: walls that almost meet, slivers, duplicate walls, a room without a door.
 """
 
 from __future__ import annotations
@@ -24,17 +23,17 @@ from floorplans.walls import TOLERANCE_M, Wall
 from floorplans.walls import Point as PlanPoint
 
 GAP_M = 0.05
-"""A free wall end this near to another wall's body is thought to be meant to meet it [m]."""
+"""A free wall end this near to another wall's body should probably meet it [m]."""
 
 SLIVER_M = 0.05
 """Walls shorter than this, and regions narrower, are slivers [m]."""
 
 ROOM_WALL_M = 1.5
-"""Walls from this height on part rooms [m]."""
+"""Walls at least this high separate rooms [m]."""
 
 SOURCE_GAP_M = 0.1
 START_GAP_M = 0.2
-"""Source and start should be this far off walls [m]."""
+"""Least distances of source and start from walls [m]."""
 
 _PARALLEL_SINE = 0.03
 _SIDE_BY_SIDE_M = 0.2
@@ -45,18 +44,18 @@ Severity = Literal["error", "warning"]
 
 @dataclass(frozen=True)
 class Finding:
-    """Something about a plan that its author should see.
+    """An error or warning about a plan.
 
     Attributes
     ----------
     severity : {"error", "warning"}
         An error makes the plan unusable.
     kind : str
-        In short, the same for all findings of a kind.
+        Short name, the same for all findings of a kind.
     text : str
-        What it is, where in the file, and what would be right.
+        What is wrong, where in the file, and what would be right.
     at : (float, float) or None
-        Where in the building, (x, y) [m]; None where it is in no place.
+        Where in the building, (x, y) [m]; None if nowhere in particular.
     """
 
     severity: Severity
@@ -67,7 +66,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class _Walls:
-    """Walls with their centre lines and what the file calls them."""
+    """Walls with their centre lines and their names in the file."""
 
     walls: tuple[Wall, ...]
     lines: NDArray[np.object_]
@@ -75,7 +74,7 @@ class _Walls:
 
 
 def inspect(file: PlanFile) -> tuple[Finding, ...]:
-    """Find everything wrong or doubtful about a plan.
+    """Find all errors and warnings of a plan.
 
     Parameters
     ----------
@@ -107,53 +106,53 @@ def _warnings(file: PlanFile) -> Iterator[Finding]:
     yield from _walls_that_almost_meet(walls)
     yield from _walls_side_by_side(walls)
     yield from _short_walls(walls)
-    yield from _openings_run_into(walls)
-    yield from _narrow_and_shut_rooms(plan)
+    yield from _walls_in_openings(walls)
+    yield from _slivers_and_closed_rooms(plan)
     yield from _near_walls(plan)
 
 
-def _walls_that_almost_meet(them: _Walls) -> Iterator[Finding]:
-    """Yield free wall ends that stop a little short of another wall, or in its thickness."""
-    tree = shapely.STRtree(them.lines)
-    reach = np.array([wall.thickness_m / 2 + GAP_M for wall in them.walls])
-    for index, wall in enumerate(them.walls):
+def _walls_that_almost_meet(walls: _Walls) -> Iterator[Finding]:
+    """Yield free wall ends that stop just short of another wall, or within its thickness."""
+    tree = shapely.STRtree(walls.lines)
+    reach = np.array([wall.thickness_m / 2 + GAP_M for wall in walls.walls])
+    for index, wall in enumerate(walls.walls):
         for end in (wall.start, wall.end):
             near = tree.query(Point(end), predicate="dwithin", distance=float(reach.max()))
             others = near[near != index]
-            gaps = shapely.distance(them.lines[others], Point(end))
+            gaps = shapely.distance(walls.lines[others], Point(end))
             meant = gaps <= reach[others]
             if meant.any() and gaps.min() > TOLERANCE_M:
                 k = int(np.argmin(np.where(meant, gaps, np.inf)))
                 yield Finding(
                     "warning",
                     "almost meets",
-                    f"an end of {them.names[index]} is {gaps[k]:.4g} m from "
-                    f"{them.names[int(others[k])]}, and waves pass between: let them meet",
+                    f"an end of {walls.names[index]} is {gaps[k]:.4g} m from "
+                    f"{walls.names[int(others[k])]}, and waves pass between them: make them meet",
                     end,
                 )
 
 
-def _walls_side_by_side(them: _Walls) -> Iterator[Finding]:
-    """Yield walls that run beside each other within their thickness: one wall drawn twice."""
-    tree = shapely.STRtree(them.lines)
-    reach = max((wall.thickness_m for wall in them.walls), default=0.0)
-    for first, second in tree.query(them.lines, predicate="dwithin", distance=reach).T:
+def _walls_side_by_side(walls: _Walls) -> Iterator[Finding]:
+    """Yield walls that run beside each other within their thickness: duplicate walls."""
+    tree = shapely.STRtree(walls.lines)
+    reach = max((wall.thickness_m for wall in walls.walls), default=0.0)
+    for first, second in tree.query(walls.lines, predicate="dwithin", distance=reach).T:
         if first >= second:
             continue
-        overlap = _overlap(them.walls[first], them.walls[second])
+        overlap = _overlap(walls.walls[first], walls.walls[second])
         if overlap is not None and overlap[1] > TOLERANCE_M:
             length, apart, at = overlap
             yield Finding(
                 "warning",
                 "side by side",
-                f"{them.names[second]} runs beside {them.names[first]} for {length:.4g} m, "
+                f"{walls.names[second]} runs beside {walls.names[first]} for {length:.4g} m, "
                 f"{apart:.4g} m off: one wall is one sheet on its centre line",
                 at,
             )
 
 
 def _overlap(a: Wall, b: Wall) -> tuple[float, float, PlanPoint] | None:
-    """Length, distance and middle of the stretch on which wall b runs within wall a's body."""
+    """Length, distance and middle of the section on which wall b runs within wall a's body."""
     along = (np.array(a.end) - a.start) / a.length_m
     across = np.array([-along[1], along[0]])
     ends = np.array([b.start, b.end]) - a.start
@@ -166,18 +165,18 @@ def _overlap(a: Wall, b: Wall) -> tuple[float, float, PlanPoint] | None:
     return float(s[1] - s[0]), apart, a.point_at(float(s.mean()))
 
 
-def _short_walls(them: _Walls) -> Iterator[Finding]:
-    for wall, name in zip(them.walls, them.names, strict=True):
+def _short_walls(walls: _Walls) -> Iterator[Finding]:
+    for wall, name in zip(walls.walls, walls.names, strict=True):
         if wall.length_m < SLIVER_M:
-            text = f"{name} is only {wall.length_m:.4g} m long: drop it and let the others meet"
+            text = f"{name} is only {wall.length_m:.4g} m long: remove it and make the others meet"
             yield Finding("warning", "sliver", text, wall.start)
 
 
-def _openings_run_into(them: _Walls) -> Iterator[Finding]:
-    """Yield ends of walls in an opening of another wall."""
-    ends = [end for wall in them.walls for end in (wall.start, wall.end)]
+def _walls_in_openings(walls: _Walls) -> Iterator[Finding]:
+    """Yield ends of walls that lie in an opening of another wall."""
+    ends = [end for wall in walls.walls for end in (wall.start, wall.end)]
     tree = shapely.STRtree(np.array([Point(end) for end in ends], dtype=np.object_))
-    for name, wall in zip(them.names, them.walls, strict=True):
+    for name, wall in zip(walls.names, walls.walls, strict=True):
         for opening in wall.openings:
             near, far = wall.point_at(opening.offset_m), wall.point_at(opening.end_m)
             line = LineString([near, far])
@@ -186,20 +185,20 @@ def _openings_run_into(them: _Walls) -> Iterator[Finding]:
                     yield Finding(
                         "warning",
                         "wall in opening",
-                        f"{them.names[int(k) // 2]} ends in a {opening.kind} of {name}: move one "
+                        f"{walls.names[int(k) // 2]} ends in a {opening.kind} of {name}: move one "
                         "of them",
                         ends[k],
                     )
 
 
-def _narrow_and_shut_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
-    """Yield regions that walls leave too narrow for anything, and rooms no door leads to."""
-    parting = [wall for wall in plan.walls if wall.height_m >= min(ROOM_WALL_M, plan.height_m)]
-    lines = [LineString([wall.start, wall.end]) for wall in parting]
+def _slivers_and_closed_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
+    """Yield regions too narrow to be rooms, and rooms without a door."""
+    separating = [wall for wall in plan.walls if wall.height_m >= min(ROOM_WALL_M, plan.height_m)]
+    lines = [LineString([wall.start, wall.end]) for wall in separating]
     noded = shapely.union_all(np.array(lines, dtype=np.object_))
     doors = [
         Point(wall.point_at(opening.offset_m + opening.width_m / 2))
-        for wall in parting
+        for wall in separating
         for opening in wall.openings
         if opening.kind != "window"
     ]
@@ -210,13 +209,13 @@ def _narrow_and_shut_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
         if not plan.outline.contains(inner):
             continue
         if room.buffer(-SLIVER_M / 2).is_empty:
-            text = f"a sliver of {room.area:.3g} m² between walls; make one wall of them"
+            text = f"a sliver of {room.area:.3g} m² between walls; merge them into one wall"
             yield Finding("warning", "sliver", text, at)
         elif not len(tree.query(room, predicate="dwithin", distance=1e-4)):
-            yield Finding("warning", "no door", _shut(room), at)
+            yield Finding("warning", "no door", _no_door(room), at)
 
 
-def _shut(room: Polygon) -> str:
+def _no_door(room: Polygon) -> str:
     x_min, y_min, x_max, y_max = room.bounds
     return (
         f"no door or passage leads to the room of {room.area:.4g} m² from ({x_min:.4g}, "
@@ -225,7 +224,7 @@ def _shut(room: Polygon) -> str:
 
 
 def _near_walls(plan: UncheckedPlan) -> Iterator[Finding]:
-    """Yield a source or start that is so near a wall that the wall is not what it was."""
+    """Yield a source or start too close to a wall."""
     x, y, z = plan.source
     for name, point, height_m, least in (
         ("source", (x, y), z, SOURCE_GAP_M),
@@ -236,5 +235,5 @@ def _near_walls(plan: UncheckedPlan) -> Iterator[Finding]:
         walls = MultiLineString(list(plan.solid_segments(height_m)))
         gap = Point(point).distance(walls)
         if TOLERANCE_M <= gap < least:
-            text = f"the {name} is {gap:.4g} m from a wall; better keep {least:g} m off"
+            text = f"the {name} is {gap:.4g} m from a wall; keep it at least {least:g} m away"
             yield Finding("warning", f"{name} near wall", text, point)

@@ -1,4 +1,4 @@
-"""Checks of a whole plan: everything that makes it unusable."""
+"""Checks of a whole plan: all that makes it unusable."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def check_plan(plan: UncheckedPlan) -> None:
 
 
 def faults(plan: UncheckedPlan) -> Iterator[PlanError]:
-    """Yield what makes a plan unusable: wrong numbers and names, or else a wrong building."""
+    """Yield wrong numbers and names or, if there are none, what is wrong about the building."""
     wrong_numbers = False
     for fault in number_faults(plan):
         wrong_numbers = True
@@ -38,16 +38,16 @@ def faults(plan: UncheckedPlan) -> Iterator[PlanError]:
 
 
 def building_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
-    """Yield what is wrong about a building whose numbers are in order."""
+    """Yield what is wrong about a building whose numbers are valid."""
     yield from _walls_outside(plan)
-    yield from _double_walls(plan.walls)
+    yield from _duplicate_walls(plan.walls)
     yield from _open_edges(plan)
     yield from _caught(lambda: _check_source(plan))
     yield from _caught(lambda: _check_start(plan))
 
 
 def number_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
-    """Yield numbers and names that are wrong by themselves."""
+    """Yield invalid numbers and names."""
     yield from _caught(lambda: _check_name(plan.name))
     yield from _caught(lambda: check_materials(plan.materials, plan.material_edition))
     yield from _caught(lambda: _check_slabs(plan))
@@ -70,7 +70,7 @@ def _caught(check: Callable[[], None]) -> Iterator[PlanError]:
 
 
 def _middle(wall: Wall) -> tuple[float, float] | None:
-    """Point half-way along a wall, None where its ends are no numbers."""
+    """Midpoint of a wall; None if its ends are not finite."""
     x, y = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
     return (x, y) if isfinite(x) and isfinite(y) else None
 
@@ -112,30 +112,30 @@ def _walls_outside(plan: UncheckedPlan) -> Iterator[PlanError]:
         if not room.covers(line):
             outside = _longest(line.difference(room))
             yield PlanError(
-                f"the wall leaves the outline from {_stretch(outside)}; shorten it or widen the "
+                f"the wall leaves the outline from {_ends_text(outside)}; shorten it or widen the "
                 "outline",
                 ("walls", index),
                 at=_first_point(outside),
             )
 
 
-def _double_walls(walls: tuple[Wall, ...]) -> Iterator[PlanError]:
+def _duplicate_walls(walls: tuple[Wall, ...]) -> Iterator[PlanError]:
     lines = _centre_lines(walls)
     for first, second in STRtree(_array(lines)).query(_array(lines), predicate="intersects").T:
         if first < second:
             shared = lines[first].intersection(lines[second])
             if shared.length > TOLERANCE_M:
-                double = _longest(shared)
+                section = _longest(shared)
                 yield PlanError(
-                    f"the wall runs along another wall from {_stretch(double)}; "
-                    "one wall is one sheet: remove the stretch from one of them",
+                    f"the wall runs along another wall from {_ends_text(section)}; "
+                    "one wall is one sheet: remove this section from one of them",
                     ("walls", int(second)),
-                    at=_first_point(double),
+                    at=_first_point(section),
                 )
 
 
 def _open_edges(plan: UncheckedPlan) -> Iterator[PlanError]:
-    """Yield where walls without unfilled openings, floor to ceiling, do not cover the outline."""
+    """Yield where no full-height walls without unfilled openings cover the outline."""
     edge = plan.outline.boundary
     full = [wall for wall in plan.walls if wall.height_m > plan.height_m - TOLERANCE_M]
     near = np.flatnonzero(shapely.dwithin(_array(_centre_lines(full)), edge, 2 * TOLERANCE_M))
@@ -150,8 +150,8 @@ def _open_edges(plan: UncheckedPlan) -> Iterator[PlanError]:
             if gap.length > 10 * TOLERANCE_M:
                 side = LineString(gap.coords[:2])
                 yield PlanError(
-                    f"the outline is open from {_stretch(side)}; put a wall from floor to ceiling "
-                    "there, and give a door or window in it a material",
+                    f"the outline is open from {_ends_text(side)}; put a wall from floor to "
+                    "ceiling there, and give a door or window in it a material",
                     ("outline",),
                     at=_first_point(side),
                 )
@@ -176,7 +176,7 @@ def _check_source(plan: UncheckedPlan) -> None:
 
 
 def _check_start(plan: UncheckedPlan) -> None:
-    """Raise for a start outside, or with a wall at every height; it may stand in a doorway."""
+    """Raise for a start outside, or inside a wall at every height; a doorway is allowed."""
     _check_inside(plan, plan.start, "start", plan.start)
     if all(_in_wall(plan, plan.start, height_m) for height_m in plan.layer_heights()):
         raise PlanError(
@@ -206,11 +206,11 @@ def _centre_lines(walls: Sequence[Wall]) -> list[LineString]:
 
 
 def _array(lines: list[LineString]) -> NDArray[np.object_]:
-    return np.array(lines, dtype=np.object_)  # of this type also when there is none
+    return np.array(lines, dtype=np.object_)  # keeps the type of an empty list
 
 
 def _lines(geometry: BaseGeometry) -> list[LineString]:
-    """Straight or bent lines of a geometry, joined where one goes on from another."""
+    """Lines of a geometry, connected ones merged."""
     merged = shapely.line_merge(geometry)
     parts = shapely.get_parts(merged)
     return [part for part in parts if isinstance(part, LineString) and not part.is_empty]
@@ -220,9 +220,11 @@ def _longest(geometry: BaseGeometry) -> LineString:
     return max(_lines(geometry), key=lambda line: line.length)
 
 
-def _stretch(line: LineString) -> str:
-    """Say "(x, y) to (x, y)" of the ends of a line, rounded to 0.1 mm."""
-    return " to ".join(f"({_tidy(x)}, {_tidy(y)})" for x, y in (line.coords[0], line.coords[-1]))
+def _ends_text(line: LineString) -> str:
+    """Write the ends of a line as "(x, y) to (x, y)", rounded to 0.1 mm."""
+    return " to ".join(
+        f"({_rounded(x)}, {_rounded(y)})" for x, y in (line.coords[0], line.coords[-1])
+    )
 
 
 def _first_point(line: LineString) -> tuple[float, float]:
@@ -230,5 +232,5 @@ def _first_point(line: LineString) -> tuple[float, float]:
     return x, y
 
 
-def _tidy(number: float) -> str:
+def _rounded(number: float) -> str:
     return f"{round(number, 4) + 0.0:g}"

@@ -12,7 +12,7 @@ OPENING_KINDS: tuple[OpeningKind, ...] = get_args(OpeningKind)
 
 
 def check_wall(wall: Wall, ceiling_m: float, own: Own, place: Place) -> None:
-    """Check a wall by itself: its ends, numbers, material and openings.
+    """Check a single wall: its ends, numbers, material and openings.
 
     Parameters
     ----------

@@ -1,13 +1,13 @@
-"""Plans from files that others drew: DXF, GeoJSON and IMDF, ROS map_server, IFC.
+"""Plans from other programs' files: DXF, GeoJSON and IMDF, ROS map_server, IFC.
 
 >>> from floorplans.importers import import_plan
 >>> imported = import_plan("office.dxf")  # doctest: +SKIP
 >>> imported.plan.bounds  # doctest: +SKIP
 (0.0, 0.0, 57.9, 27.9)
 
-A reader for each format makes a `Draft` of what its file says; `assemble` makes the walls meet,
-hangs doors and windows into them, finds the outline and gives a default to what the file does not
-tell. `Imported` holds the plan and says what was assumed and changed.
+A reader for each format turns its file into a `Draft`; `assemble` makes the walls meet, attaches
+doors and windows to them, finds the outline and gives a default to what the file does not state.
+`Imported` holds the plan and lists what was assumed and changed.
 """
 
 from floorplans.importers.assembly.assemble import assemble

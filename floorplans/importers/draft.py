@@ -1,7 +1,7 @@
-"""What an importer reads from a file, before it is a plan.
+"""What a reader finds in a file, before it is a plan.
 
-A reader of a format makes a `Draft` of what the file says and leaves out what it does not know;
-`floorplans.importers.assembly.assemble.assemble` makes a plan of it.
+The reader of a format returns a `Draft` that leaves out what the file does not state;
+`floorplans.importers.assembly.assemble.assemble` turns it into a plan.
 """
 
 from __future__ import annotations
@@ -21,33 +21,33 @@ _MAX_SINE = sin(radians(20.0))
 
 @dataclass(frozen=True)
 class ImportOptions:
-    """What the user knows better than the file; None leaves it to the file, then to a default.
+    """What the user specifies; None uses the file's value or, without one, a default.
 
     Attributes
     ----------
     name : str or None
         Name of the plan; by default the file's name.
     height_m : float or None
-        From floor to ceiling [m]; by default the file's, else 3.
+        From floor to ceiling [m]; by default the file's, or 3.
     wall_thickness_m : float or None
-        Of walls whose thickness the file does not tell [m]; by default 0.1.
+        Of walls whose thickness the file does not state [m]; by default 0.1.
     wall_material, floor_material, ceiling_material : str or None
-        Of what the file gives no material; by default plasterboard, concrete and concrete.
+        Where the file gives no material; by default plasterboard, concrete and concrete.
     source : (float, float, float) or None
-        (x, y, z) in the plan [m]; by default well off the walls.
+        (x, y, z) of the transmitter in the plan [m]; by default away from walls.
     start : (float, float) or None
-        (x, y) in the plan [m]; by default the cell farthest from the source, as one walks.
+        (x, y) in the plan [m]; by default the cell with the longest walk from the source.
     unit : str or None
         Of the file's coordinates, one of `floorplans.importers.units.UNITS`.
     level : str or None
-        Which storey, where the file holds several.
+        Which storey, if the file holds several.
     scale_m : float or None
         Side of a pixel [m], for pictures.
     tolerance_m : float or None
-        How far a wall may be moved to make walls meet [m], and how far chords may leave an arc;
-        by default each format's own.
+        How far a wall may be moved to make walls meet, and chords may deviate from an arc [m]; by
+        default depends on the format.
     layers : mapping of str to str
-        Layer, class or type of the file -> KIND or KIND:MATERIAL; it goes before the defaults.
+        Layer, class or type of the file -> KIND or KIND:MATERIAL; overrides the defaults.
     """
 
     name: str | None = None
@@ -67,7 +67,7 @@ class ImportOptions:
 
 @dataclass(frozen=True)
 class RawWall:
-    """A straight wall as a file tells it.
+    """A straight wall as a file states it.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class RawWall:
     thickness_m : float or None
     material : str or None
     height_m : float or None
-        Above the floor [m]; None is up to the ceiling.
+        Above the floor [m]; None reaches the ceiling.
     """
 
     start: Point
@@ -88,7 +88,7 @@ class RawWall:
 
 @dataclass(frozen=True)
 class RawOpening:
-    """A door, window or passage as a file tells it.
+    """A door, window or passage as a file states it.
 
     Attributes
     ----------
@@ -98,12 +98,12 @@ class RawOpening:
         Along the wall [m].
     kind : {"door", "window", "passage"}
     direction : (float, float) or None
-        Along its wall, of any length but 0 and either sense; None where the file does not tell.
+        Along its wall, of any non-zero length and either sign; None if unknown.
     sill_m, head_m : float or None
         Heights above the floor [m].
     material : str or None
-        What fills it. None is a default: a window has glass, a passage is open, and a door is open
-        inside the building and of wood in the outline.
+        What fills it. None is the default: a window has glass, a passage is open, and a door is
+        open inside the building and of wood in the outline.
     thickness_m : float or None
         Of the filling [m].
     """
@@ -128,7 +128,7 @@ class RawOpening:
         head_m: float | None = None,
         material: str | None = None,
     ) -> RawOpening:
-        """Make an opening from its two ends on the floor (x, y) [m]."""
+        """Create an opening from its two ends on the floor (x, y) [m]."""
         (x0, y0), (x1, y1) = start, end
         return cls(
             centre=((x0 + x1) / 2, (y0 + y1) / 2),
@@ -141,7 +141,7 @@ class RawOpening:
         )
 
     def is_along(self, direction: Point) -> bool:
-        """Whether it runs along a unit vector; one of unknown direction runs along any."""
+        """Whether it is nearly parallel to a unit vector; true for an unknown direction."""
         if self.direction is None:
             return True
         (ux, uy), (vx, vy) = direction, self.direction
@@ -150,9 +150,9 @@ class RawOpening:
 
 @dataclass(frozen=True)
 class LayerUse:
-    """What became of a layer, class or type of the file: a line of the report.
+    """What became of a layer, class or type of the file.
 
-    `is_unknown` is true where its name says nothing of walls, doors or windows.
+    `is_unknown` is true if its name is not known to mean anything.
     """
 
     name: str
@@ -163,7 +163,7 @@ class LayerUse:
 
 @dataclass(frozen=True)
 class Origin:
-    """Where the plan's (0, 0) lies in the file's coordinates, and what those are."""
+    """Position of the plan's (0, 0) in the file's coordinates, and what those are."""
 
     x: float
     y: float
@@ -172,26 +172,26 @@ class Origin:
 
 @dataclass(frozen=True)
 class Draft:
-    """Everything a reader took out of a file, in metres.
+    """All that a reader found in a file, in metres.
 
     Attributes
     ----------
     name : str
-        What the file calls the building or storey, else the file's name.
+        The file's name for the building or storey, or the name of the file.
     walls : tuple of RawWall
     openings : tuple of RawOpening
     outline : shapely.geometry.Polygon or None
-        What the storey covers [m]; None where the walls must tell.
+        What the storey covers [m]; None derives it from the walls.
     height_m : float or None
         From floor to ceiling [m].
     floor_material, ceiling_material : str or None
     origin : Origin or None
-        None where coordinates are the file's own: the plan is then moved to (0, 0), and told.
+        None if coordinates are the file's own: the plan is then moved to (0, 0).
     georeference : GeoOrigin or None
-        Where on the Earth the draft's (0, 0) lies; None where that is not known.
+        Where on the Earth the draft's (0, 0) lies; None if unknown.
     layers : tuple of LayerUse
     notes : tuple of str
-        What else the user should hear, one sentence each.
+        Further information for the user, one sentence each.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Which reader a file needs, by its ending and by its first bytes."""
+"""The reader for a file, chosen by its suffix and its first bytes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PNG = b"\x89PNG\r\n\x1a\n"
 
 @dataclass(frozen=True)
 class Format:
-    """A kind of file that can be imported.
+    """A file format that can be imported.
 
     Attributes
     ----------
@@ -32,9 +32,9 @@ class Format:
     suffixes : tuple of str
         In lower case, with the dot.
     module, function : str
-        The reader; its module is loaded when it is needed.
+        The reader; its module is imported on first use.
     looks_right : callable
-        Whether the first bytes of a file can be the beginning of one of this kind.
+        Whether the first bytes of a file match this format.
     """
 
     title: str
@@ -77,18 +77,18 @@ FORMATS = (
     ),
     Format("IFC model", (".ifc",), "ifc.reader", "read_ifc", _is_ifc),
 )  # fmt: skip
-"""All formats there are readers for."""
+"""All formats that can be imported."""
 
 
 def import_plan(path: str | Path, options: ImportOptions | None = None) -> Imported:
-    """Make a plan of a file that another program wrote.
+    """Create a plan from another program's file.
 
     Parameters
     ----------
     path : str or Path
         Its ending names the format; see `FORMATS`. A folder is read as an IMDF venue.
     options : ImportOptions, optional
-        What the user knows better than the file.
+        What the user specifies.
 
     Returns
     -------
@@ -97,14 +97,14 @@ def import_plan(path: str | Path, options: ImportOptions | None = None) -> Impor
     Raises
     ------
     PlanError
-        When the file cannot be read, is of another kind, or holds no building.
+        When the file cannot be read, is of another format, or holds no building.
     """
     options = options or ImportOptions()
     path = Path(path)
     try:
         drafted = read_draft(path, options)
         if isinstance(drafted, FloorPlan):
-            return Imported.whole(drafted, options, path.name)
+            return Imported.from_plan(drafted, options, path.name)
         return assemble(drafted, options, path.name)
     except PlanError as error:
         raise error.located(str(path)) from error

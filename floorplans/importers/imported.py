@@ -1,4 +1,4 @@
-"""A plan that was imported, and what its file did not tell."""
+"""An imported plan, and what was assumed and changed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from floorplans.toml.writer import dumps
 
 @dataclass(frozen=True)
 class Assumption:
-    """A value that the file did not give: its key, the value as text, and why this one."""
+    """A value that the file did not give: its key, the value as text, and the reason."""
 
     key: str
     value: str
@@ -21,7 +21,7 @@ class Assumption:
 
 @dataclass(frozen=True)
 class Imported:
-    """What came of a file.
+    """The result of an import.
 
     Attributes
     ----------
@@ -29,15 +29,15 @@ class Imported:
     source_file : str
         Name of the file it came from, without its folder.
     origin : Origin
-        Where the plan's (0, 0) lies in the file.
+        Position of the plan's (0, 0) in the file.
     assumed : tuple of Assumption
-        What the file did not tell.
+        What the file did not state.
     layers : tuple of LayerUse
         What became of each layer of the file.
     changes : tuple of Change
-        What was mended to make walls meet and the outline close.
+        Repairs that made walls meet and the outline close.
     notes : tuple of str
-        What else the user should hear, one sentence each.
+        Further information for the user, one sentence each.
     """
 
     plan: FloorPlan
@@ -49,8 +49,8 @@ class Imported:
     notes: tuple[str, ...] = ()
 
     @classmethod
-    def whole(cls, plan: FloorPlan, options: ImportOptions, source_file: str) -> Imported:
-        """Take a plan from a file that holds all of one; only what options name is replaced."""
+    def from_plan(cls, plan: FloorPlan, options: ImportOptions, source_file: str) -> Imported:
+        """Wrap a complete plan; only what the options specify is replaced."""
         given = {
             key: getattr(options, key)
             for key in ("name", "floor_material", "ceiling_material", "source", "start")
@@ -60,7 +60,7 @@ class Imported:
 
     @property
     def report(self) -> tuple[str, ...]:
-        """Everything to tell about the import, a line each."""
+        """All information about the import, one line each."""
         return (
             *(f"layer {use.name}: {use.n_objects} objects: {use.became}" for use in self.layers),
             *(f"assumed {a.key} = {a.value}: {a.why}" for a in self.assumed),
@@ -69,7 +69,7 @@ class Imported:
         )
 
     def toml(self) -> str:
-        """Text of the plan's file, in which everything assumed says so in a comment."""
+        """Text of the plan's file, with a comment on every assumed value."""
         return "\n".join([*self._header(), "", *self._body()]) + "\n"
 
     def _header(self) -> list[str]:
@@ -85,7 +85,7 @@ class Imported:
         return [" ".join(line.split()) for line in lines]
 
     def _body(self) -> list[str]:
-        """Lines of the plan; those before the first wall carry what was assumed of them."""
+        """Lines of the plan, with the assumptions before the first wall as comments."""
         whys = {assumption.key: assumption.why for assumption in self.assumed}
         lines = self._lines()
         n_top = lines.index("[[walls]]")

@@ -1,7 +1,7 @@
-"""What layers, blocks and types are, by their names.
+"""The meaning of layers, blocks and types from their names.
 
-Names are cut into words at everything but letters, and at changes from small to capital letters;
-a word decides if it begins like one of those below. The words are those of the AIA and ISO 13567
+Names are split into words at everything but letters, and at changes from lower to upper case; a
+word decides if it begins with one of those below. The words are those of the AIA and ISO 13567
 layer lists and of common drawings in English, German, French, Spanish, Italian, Portuguese, Dutch,
 Swedish, Polish and Turkish.
 """
@@ -48,7 +48,7 @@ _WORDS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
         "flor", "evtr", "lift",
     )),
 )  # fmt: skip
-"""The first group that one of a name's words begins like; with a space at the end, is."""
+"""The first match decides: a prefix of a word, or with a trailing space a whole word."""
 
 _MATERIAL_WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("concrete", ("conc", "beton", "hormig", "calcest", "stahlb")),
@@ -65,19 +65,19 @@ _MATERIAL_WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )  # fmt: skip
 
 _PLAIN = str.maketrans({"ß": "ss", "ł": "l", "ı": "i", "ø": "o"})
-"""Letters that lose no accent by decomposition."""
+"""Letters that decomposition does not reduce to ASCII."""
 
 
 @dataclass(frozen=True)
 class Meaning:
-    """What a name stands for: a kind, None if unknown, and a material, None if not told."""
+    """Meaning of a name: a kind and a material, each None if unknown."""
 
     kind: Kind | None
     material: str | None = None
 
 
 def meaning_of(name: str, layers: Mapping[str, str] | None = None) -> Meaning:
-    """Tell what a layer is, from the user's mapping, else from its name.
+    """Find what a layer is, from the user's mapping or otherwise from its name.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def meaning_of(name: str, layers: Mapping[str, str] | None = None) -> Meaning:
 
 
 def material_named(name: str) -> str | None:
-    """Material that a name speaks of, None if it names none we know.
+    """Material that a name refers to; None if it contains no known one.
 
     Examples
     --------
@@ -126,7 +126,7 @@ def material_named(name: str) -> str | None:
 
 
 def parse_meaning(text: str, name: str) -> Meaning:
-    """Read KIND or KIND:MATERIAL as a user writes it for the layer `name`."""
+    """Parse KIND or KIND:MATERIAL as a user writes it for the layer `name`."""
     kind_text, _, material = text.partition(":")
     kinds: dict[str, Kind] = {kind: kind for kind in KINDS}
     kind = kinds.get(kind_text.strip())
@@ -139,7 +139,7 @@ def parse_meaning(text: str, name: str) -> Meaning:
 
 
 def _words(name: str) -> list[str]:
-    """Small letters of each word of a name, accents taken off."""
+    """Words of a name in lower case without accents."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     plain = unicodedata.normalize("NFKD", spaced.translate(_PLAIN))
     letters = "".join(c for c in plain if not unicodedata.combining(c))
@@ -147,14 +147,14 @@ def _words(name: str) -> list[str]:
 
 
 def _named_material(words: list[str]) -> str | None:
-    """Return the material whose own name is among the words, the longest name first."""
+    """Return the material whose full name is among the words; the longest if several."""
     text = f" {' '.join(words)} "
     named = [name for name in MATERIALS if f" {name.replace('_', ' ')} " in text]
     return max(named, key=len, default=None)
 
 
 def _first(words: list[str], lists: tuple[tuple[T, tuple[str, ...]], ...]) -> T | None:
-    """Return the first value one of whose beginnings a word has."""
+    """Return the first value for which a word has one of the beginnings."""
     for value, beginnings in lists:
         if any(f"{word} ".startswith(beginnings) for word in words):
             return value

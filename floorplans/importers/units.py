@@ -1,4 +1,4 @@
-"""Units of length, and which one a drawing is in when it does not say."""
+"""Units of length, and the likely unit of a drawing that does not state one."""
 
 from __future__ import annotations
 
@@ -20,38 +20,38 @@ UNITS: dict[str, float] = {
 """Length of each unit [m]."""
 
 BUILDING_M = (3.0, 1000.0)
-"""Longer sides that a storey can have [m]."""
+"""Range of a storey's longer side [m]."""
 
-_USUAL_M = (4.0, 300.0)
+_COMMON_SIZE_M = (4.0, 300.0)
 _DOOR_M = (0.5, 1.3)
-_GUESSED = ("mm", "cm", "m", "in", "ft")
+_COMMON_UNITS = ("mm", "cm", "m", "in", "ft")
 
 
 def unit_length(unit: str) -> float:
-    """Length of a unit the user names [m]."""
+    """Length of a unit that the user gives [m]."""
     if unit not in UNITS:
         raise PlanError(unknown_name("unit", unit, tuple(UNITS)), ("unit",), unit)
     return UNITS[unit]
 
 
-def check_size(size: tuple[float, float], unit: str, said_by: str) -> None:
-    """Refuse a drawing whose unit makes it no building.
+def check_size(size: tuple[float, float], unit: str, stated_by: str) -> None:
+    """Reject a unit in which the drawing is no building.
 
     Parameters
     ----------
     size : (float, float)
         Width and depth in the drawing's unit.
     unit : str
-    said_by : str
-        Who says that this is its unit.
+    stated_by : str
+        Who states this unit, for the message.
     """
     low_m, high_m = BUILDING_M
     if low_m <= max(size) * UNITS[unit] <= high_m:
         return
-    fitting = [other for other in _GUESSED if _fits(max(size) * UNITS[other], _USUAL_M)]
+    candidates = _plausible_units(size)
     raise PlanError(
-        f"in {unit}, as {said_by}, the walls cover {_size_text(size, unit)}, which is no building; "
-        f"{_proposal(size, fitting)}",
+        f"in {unit}, as {stated_by}, the walls cover {_size_text(size, unit)}, which is no "
+        f"building; {_proposal(size, candidates)}",
         ("unit",),
         unit,
         remedy="unit",
@@ -59,7 +59,7 @@ def check_size(size: tuple[float, float], unit: str, said_by: str) -> None:
 
 
 def guess_unit(size: tuple[float, float], door_widths: Sequence[float]) -> str:
-    """Unit of a drawing from its size and its doors, if only one can be meant.
+    """Infer the unit of a drawing from its size and its doors.
 
     Parameters
     ----------
@@ -73,16 +73,16 @@ def guess_unit(size: tuple[float, float], door_widths: Sequence[float]) -> str:
     PlanError
         When no unit makes it a building, or several do.
     """
-    fitting = [unit for unit in _GUESSED if _fits(max(size) * UNITS[unit], _USUAL_M)]
+    candidates = _plausible_units(size)
     if door_widths:
         width = median(door_widths)
-        by_door = [unit for unit in fitting if _fits(width * UNITS[unit], _DOOR_M)]
-        fitting = by_door or fitting
-    if len(fitting) == 1:
-        return fitting[0]
+        by_door = [unit for unit in candidates if _fits(width * UNITS[unit], _DOOR_M)]
+        candidates = by_door or candidates
+    if len(candidates) == 1:
+        return candidates[0]
     raise PlanError(
-        f"the drawing does not tell its unit, and {'several' if fitting else 'none'} would make "
-        f"it a building; {_proposal(size, fitting)}",
+        f"the drawing does not state its unit, and {'several' if candidates else 'none'} would "
+        f"make it a building; {_proposal(size, candidates)}",
         ("unit",),
         remedy="unit",
     )
@@ -92,11 +92,15 @@ def _fits(value: float, span: tuple[float, float]) -> bool:
     return span[0] <= value <= span[1]
 
 
-def _proposal(size: tuple[float, float], fitting: Sequence[str]) -> str:
-    """Say what each unit would make of the drawing."""
-    if not fitting:
+def _plausible_units(size: tuple[float, float]) -> list[str]:
+    return [unit for unit in _COMMON_UNITS if _fits(max(size) * UNITS[unit], _COMMON_SIZE_M)]
+
+
+def _proposal(size: tuple[float, float], candidates: Sequence[str]) -> str:
+    """Write the size of the drawing in each candidate unit."""
+    if not candidates:
         return f"give the unit, one of {', '.join(UNITS)}"
-    choices = [f"{unit} for {_size_text(size, unit)}" for unit in fitting]
+    choices = [f"{unit} for {_size_text(size, unit)}" for unit in candidates]
     return f"give the unit: {' or '.join(choices)}"
 
 

@@ -1,1 +1,1 @@
-"""Repair of walls and plans: ends that nearly meet, pieces of one line, duplicate walls."""
+"""Repair of walls and plans: ends that almost meet, collinear pieces, duplicate walls."""

@@ -1,4 +1,4 @@
-"""Walls that lie in one line: those that run along each other or go on from another become one."""
+"""Collinear walls: those that overlap or continue each other are merged."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from floorplans.repair.moves import (
 from floorplans.walls import TOLERANCE_M, Interval, Opening, Wall
 
 _MAX_SINE = sin(radians(3.0))
-"""Sine of the largest angle between walls of one line."""
-_THICKNESS_SHARE = 0.25
-"""Walls whose centre lines are nearer than this share of their thickness lie in one line."""
+"""Sine of the largest angle between collinear walls."""
+_THICKNESS_FRACTION = 0.25
+"""Walls whose centre lines are nearer than this fraction of their thickness are collinear."""
 _SAME_THICKNESS_M = 1e-3
 
 
@@ -37,38 +37,38 @@ class _Piece:
 def merge_lines(
     walls: Sequence[Wall],
     reach_m: float,
-    thickness_share: float,
+    thickness_fraction: float,
     changes: list[Change],
-    sideways_share: float = _THICKNESS_SHARE,
+    sideways_fraction: float = _THICKNESS_FRACTION,
 ) -> tuple[Wall, ...]:
-    """Make one wall of walls in a line, and let no two walls run along each other.
+    """Merge collinear walls, so that no two walls run along each other.
 
     Parameters
     ----------
     walls : sequence of Wall
     reach_m : float
-        Gaps in the line up to this width are closed, and walls moved sideways as far [m].
-    thickness_share : float
-        Walls are joined where their thicknesses differ by at most this share.
+        Gaps in the line up to this width are closed, and walls moved sideways by up to it [m].
+    thickness_fraction : float
+        Walls are joined where their thicknesses differ by at most this fraction.
     changes : list of Change
-        What is done is added here.
-    sideways_share : float
-        Share of its thickness by which a wall may besides be moved sideways.
+        Changes are appended here.
+    sideways_fraction : float
+        Fraction of its thickness by which a wall may also be moved sideways.
 
     Returns
     -------
     tuple of Wall
     """
     merged: list[Wall] = []
-    for group in sorted(_groups(walls, reach_m, sideways_share), key=min):
+    for group in sorted(_groups(walls, reach_m, sideways_fraction), key=min):
         if len(group) == 1:
             merged.append(walls[group[0]])
         else:
-            merged += _one_line([walls[i] for i in group], reach_m, thickness_share, changes)
+            merged += _one_line([walls[i] for i in group], reach_m, thickness_fraction, changes)
     return tuple(merged)
 
 
-def _groups(walls: Sequence[Wall], reach_m: float, sideways_share: float) -> Iterator[list[int]]:
+def _groups(walls: Sequence[Wall], reach_m: float, sideways_fraction: float) -> Iterator[list[int]]:
     """Indices of the walls of each line, the longest wall first."""
     lines = wall_lines(walls)
     tree = shapely.STRtree(lines)
@@ -81,11 +81,11 @@ def _groups(walls: Sequence[Wall], reach_m: float, sideways_share: float) -> Ite
         group, todo = [leader], [leader]
         while todo:
             near = tree.query(
-                lines[todo.pop()], "dwithin", distance=reach_m + sideways_share * thickest
+                lines[todo.pop()], "dwithin", distance=reach_m + sideways_fraction * thickest
             )
             members = [i for i in sorted(near.tolist()) if i in free]
             for i in members:
-                sideways_m = reach_m + sideways_share * min(
+                sideways_m = reach_m + sideways_fraction * min(
                     walls[leader].thickness_m, walls[i].thickness_m
                 )
                 members_here = [walls[k] for k in group]
@@ -117,22 +117,22 @@ def _span(leader: Wall, wall: Wall) -> Interval:
 
 
 def _one_line(
-    group: Sequence[Wall], reach_m: float, thickness_share: float, changes: list[Change]
+    group: Sequence[Wall], reach_m: float, thickness_fraction: float, changes: list[Change]
 ) -> list[Wall]:
-    """Walls of one line, put on it, none over another; alike neighbours made one."""
+    """Walls of one line, moved onto it without overlap; equal neighbours merged."""
     leader = group[0]
     pieces = [_Piece(wall, _span(leader, wall)) for wall in group]
-    runs = _joined(_owners(pieces, reach_m), thickness_share)
+    runs = _joined(_owners(pieces, reach_m), thickness_fraction)
     walls = [_wall_on(leader, span, owners, pieces) for span, owners in runs]
     if _same(walls, group):
         return list(group)
-    text = f"{len(group)} walls in one line made {len(walls)}"
+    text = f"{len(group)} collinear walls merged into {len(walls)}"
     changes.append(Change("joined", text, walls[0].start, walls[-1].end))
     return walls
 
 
 def _owners(pieces: Sequence[_Piece], reach_m: float) -> Iterator[tuple[Interval, _Piece]]:
-    """Each stretch of the line and the thickest wall there; stretches up to the reach go along."""
+    """Sections of the line with the thickest wall on each; those up to the reach join the last."""
     stops = sorted({stop for piece in pieces for stop in piece.span})
     last: tuple[Interval, _Piece] | None = None
     for low, high in pairwise(stops):
@@ -157,25 +157,25 @@ def _rank(piece: _Piece) -> tuple[float, float, float]:
 
 
 def _joined(
-    stretches: Iterator[tuple[Interval, _Piece]], thickness_share: float
+    sections: Iterator[tuple[Interval, _Piece]], thickness_fraction: float
 ) -> list[tuple[Interval, list[tuple[float, Wall]]]]:
-    """Runs of stretches whose walls are alike, with the length each wall has in them."""
+    """Runs of sections whose walls are alike, with the length of each wall in them."""
     runs: list[tuple[Interval, list[tuple[float, Wall]]]] = []
-    for (low, high), piece in stretches:
-        share = (high - low, piece.wall)
+    for (low, high), piece in sections:
+        part = (high - low, piece.wall)
         if (
             runs
             and runs[-1][0][1] == low
-            and _alike(runs[-1][1][-1][1], piece.wall, thickness_share)
+            and _alike(runs[-1][1][-1][1], piece.wall, thickness_fraction)
         ):
-            runs[-1] = ((runs[-1][0][0], high), [*runs[-1][1], share])
+            runs[-1] = ((runs[-1][0][0], high), [*runs[-1][1], part])
         else:
-            runs.append(((low, high), [share]))
+            runs.append(((low, high), [part]))
     return runs
 
 
-def _alike(a: Wall, b: Wall, thickness_share: float) -> bool:
-    allowed_m = max(_SAME_THICKNESS_M, thickness_share * max(a.thickness_m, b.thickness_m))
+def _alike(a: Wall, b: Wall, thickness_fraction: float) -> bool:
+    allowed_m = max(_SAME_THICKNESS_M, thickness_fraction * max(a.thickness_m, b.thickness_m))
     return (
         a.material == b.material
         and abs(a.height_m - b.height_m) < TOLERANCE_M
@@ -186,20 +186,20 @@ def _alike(a: Wall, b: Wall, thickness_share: float) -> bool:
 def _wall_on(
     leader: Wall, span: Interval, owners: list[tuple[float, Wall]], pieces: Sequence[_Piece]
 ) -> Wall:
-    """Make the wall of a run, with the openings whose middles lie in it."""
+    """Create the wall of a run, with the openings whose middles lie on it."""
     start, end = (_point_on(leader, s) for s in span)
     first = owners[0][1]
     total_m = sum(length_m for length_m, _ in owners)
     mean_m = sum(length_m * wall.thickness_m for length_m, wall in owners) / total_m
     same = all(wall.thickness_m == first.thickness_m for _, wall in owners)
-    look = replace(first, thickness_m=first.thickness_m if same else round(mean_m, 3))
-    bare = replace(look, start=start, end=end, openings=())
+    model = replace(first, thickness_m=first.thickness_m if same else round(mean_m, 3))
+    bare = replace(model, start=start, end=end, openings=())
     parts = [_with_openings_on(piece.wall, bare) for piece in pieces]
-    return moved_wall([replace(look, openings=()), *parts], start, end)
+    return moved_wall([replace(model, openings=()), *parts], start, end)
 
 
 def _with_openings_on(wall: Wall, bare: Wall) -> Wall:
-    """Leave a wall the openings whose middles lie beside another wall."""
+    """Keep only the openings of a wall whose middles lie beside another wall."""
 
     def beside(opening: Opening) -> bool:
         middle = wall.point_at(opening.offset_m + opening.width_m / 2)
@@ -218,17 +218,17 @@ def _point_on(leader: Wall, s: float) -> tuple[float, float]:
 
 
 def _same(walls: Sequence[Wall], group: Sequence[Wall]) -> bool:
-    """Whether each wall lies where one of the group does already, with the same look."""
+    """Whether each wall coincides with one of the group and has the same properties."""
 
     def near(a: Wall, b: Wall) -> bool:
         straight = max(_gap(a.start, b.start), _gap(a.end, b.end))
         turned = max(_gap(a.start, b.end), _gap(a.end, b.start))
-        same_look = (a.material, a.thickness_m, a.height_m) == (
+        same_properties = (a.material, a.thickness_m, a.height_m) == (
             b.material,
             b.thickness_m,
             b.height_m,
         )
-        return same_look and min(straight, turned) <= 2 * TOLERANCE_M
+        return same_properties and min(straight, turned) <= 2 * TOLERANCE_M
 
     return len(walls) == len(group) and all(any(near(a, b) for b in group) for a in walls)
 

@@ -41,9 +41,9 @@ def snap_ends(walls: Sequence[Wall], reach_m: float, changes: list[Change]) -> t
     ----------
     walls : sequence of Wall
     reach_m : float
-        How far beyond a wall's body an end may be and still be meant to meet it [m].
+        Ends up to this far beyond a wall's body are moved to it [m].
     changes : list of Change
-        What is done is added here.
+        Changes are appended here.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def snap_ends(walls: Sequence[Wall], reach_m: float, changes: list[Change]) -> t
     ends = np.array([(wall.start, wall.end) for wall in walls], dtype=np.float64)
     moved = _moved_to_walls(walls, ends, reach_m)
     moved = _moved_together(walls, moved, _on_walls(walls, moved), reach_m)
-    return tuple(_rebuilt(walls, ends, moved, reach_m, changes))
+    return tuple(_walls_between(walls, ends, moved, reach_m, changes))
 
 
 def _moved_to_walls(
@@ -82,7 +82,7 @@ def _moved_to_walls(
 
 
 def _on_walls(walls: Sequence[Wall], ends: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which ends (n, 2, 2) lie on another wall, between its ends, (2 n,)."""
+    """Which ends (n, 2, 2) lie on another wall between its ends, (2 n,)."""
     points = _points(ends.reshape(-1, 2))
     which, near = shapely.STRtree(wall_lines(walls)).query(
         points, predicate="dwithin", distance=TOLERANCE_M
@@ -110,17 +110,17 @@ def _meeting_point(
     reach_m: float,
     in_corner: bool,
 ) -> Point:
-    """Where an end should be: the nearest crossing of its line with that of a wall around it.
+    """Where an end should be: the nearest crossing of its line with that of a nearby wall.
 
-    An end that meets another end already moves no farther than the reach.
+    An end that already meets another end moves no farther than the reach.
     """
     wall = walls[end.wall]
     here = wall.end if end.side else wall.start
     best, best_m = here, np.inf
     for j, gap_m in others:
         other = walls[j]
-        meant = gap_m <= reach_m if in_corner else _in_body(wall, here, other, reach_m)
-        if not meant:
+        meets = gap_m <= reach_m if in_corner else _in_body(wall, here, other, reach_m)
+        if not meets:
             continue
         crossing = line_crossing(wall, other, _MIN_SINE)
         if crossing is None:
@@ -136,7 +136,7 @@ def _meeting_point(
 
 
 def _in_body(wall: Wall, end: Point, other: Wall, reach_m: float) -> bool:
-    """Whether an end lies in another wall's body, or in the corner the two would make."""
+    """Whether an end lies in another wall's body, or in the corner the two would form."""
     _, across = along_across(other, end)
     in_depth = abs(across) <= reach_m + other.thickness_m / 2
     return in_depth and _beside(other, end) <= reach_m + wall.thickness_m / 2
@@ -151,7 +151,7 @@ def _beside(wall: Wall, point: Point) -> float:
 def _moved_together(
     walls: Sequence[Wall], ends: NDArray[np.float64], fixed: NDArray[np.bool_], reach_m: float
 ) -> NDArray[np.float64]:
-    """Ends (n, 2, 2), those nearer to each other than the reach put on one point, a fixed one."""
+    """Ends (n, 2, 2); those closer together than the reach are moved to one, a fixed one if any."""
     flat = ends.reshape(-1, 2)
     points = _points(flat)
     first, second = shapely.STRtree(points).query(points, predicate="dwithin", distance=reach_m)
@@ -162,9 +162,9 @@ def _moved_together(
     together = flat.copy()
     for members in np.split(order, starts):
         if members.size > 1 and np.ptp(flat[members], axis=0).max() > 0:
-            firm = members[fixed[members]]
+            anchors = members[fixed[members]]
             together[members] = (
-                flat[firm[0]] if firm.size else _corner(walls, flat, members, reach_m)
+                flat[anchors[0]] if anchors.size else _corner(walls, flat, members, reach_m)
             )
     return together.reshape(ends.shape)
 
@@ -172,7 +172,7 @@ def _moved_together(
 def _corner(
     walls: Sequence[Wall], flat: NDArray[np.float64], members: NDArray[np.int64], reach_m: float
 ) -> Point:
-    """Point for ends that belong together: where the two longest walls cross, if that is near."""
+    """Common point of ends: where the two longest walls cross, if that is near."""
     indices: list[int] = members.tolist()
     by_length = sorted(indices, key=lambda i: (-walls[i // 2].length_m, i))
     longest = by_length[0]
@@ -186,14 +186,14 @@ def _corner(
     return here
 
 
-def _rebuilt(
+def _walls_between(
     walls: Sequence[Wall],
     ends: NDArray[np.float64],
     moved: NDArray[np.float64],
     reach_m: float,
     changes: list[Change],
 ) -> Iterable[Wall]:
-    """Walls between the moved ends; what is done to each is added to the changes."""
+    """Walls between the moved ends; each change is recorded."""
     for wall, old, new in zip(walls, ends, moved, strict=True):
         start, end = (float(new[0][0]), float(new[0][1])), (float(new[1][0]), float(new[1][1]))
         if dist(start, end) <= max(min(reach_m, wall.length_m / 2), TOLERANCE_M):

@@ -1,4 +1,4 @@
-"""What the steps of the repair share: changes, and walls moved with their openings."""
+"""Tools of the repair: changes, and walls moved with their openings."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 
 DECIMALS = 10
-"""Coordinates are kept to 1e-10 m: a wall that ends on an oblique one then ends on it for a tracer
-too, which takes points farther apart than 1e-8 m for two."""
+"""Coordinates are rounded to 1e-10 m: a wall that ends on an oblique one then also ends on it for a
+tracer, which distinguishes points more than 1e-8 m apart."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """One thing that was mended.
+    """One change that a repair made.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class Change:
     at : (float, float)
         Where, (x, y) [m].
     to : (float, float) or None
-        The other end of what was done [m].
+        The other end of the change [m].
     """
 
     kind: str
@@ -39,7 +39,7 @@ class Change:
     to: Point | None = None
 
     def __str__(self) -> str:
-        """Say where, and what was done."""
+        """Say where it is, and what was done."""
         where = at_text(self.at) if self.to is None else f"{at_text(self.at)} to {at_text(self.to)}"
         return f"{where}: {self.text}"
 
@@ -69,7 +69,7 @@ def direction(wall: Wall) -> Point:
 
 
 def along_across(wall: Wall, point: Point) -> tuple[float, float]:
-    """Coordinates of a point along a wall's line from its start, and across it, to the left [m]."""
+    """Coordinates of a point along a wall's line from its start, and to its left [m]."""
     ux, uy = direction(wall)
     x, y = point[0] - wall.start[0], point[1] - wall.start[1]
     return (x * ux + y * uy, ux * y - uy * x)
@@ -82,10 +82,10 @@ def wall_lines(walls: Sequence[Wall]) -> NDArray[np.object_]:
 
 
 def moved_wall(parts: Sequence[Wall], start: Point, end: Point) -> Wall:
-    """Make a wall between two points that looks like the first of `parts`, with all their openings.
+    """Create a wall between two points like the first of `parts`, with the openings of all.
 
-    Openings keep their place in the plan as far as the new wall reaches; of two that would
-    overlap, the one of the earlier part stays.
+    Openings keep their place in the plan where the new wall covers it; of two that would overlap,
+    that of the earlier part stays.
     """
     bare = replace(parts[0], start=start, end=end, openings=())
     openings: list[Opening] = []
@@ -97,7 +97,7 @@ def moved_wall(parts: Sequence[Wall], start: Point, end: Point) -> Wall:
 
 
 def _moved_openings(part: Wall, bare: Wall) -> Iterable[Opening]:
-    """Openings of `part` as seen from `bare`, cut to its length."""
+    """Openings of `part` in the coordinates of `bare`, cut to its length."""
     for opening in part.openings:
         sides = (part.point_at(opening.offset_m), part.point_at(opening.end_m))
         low, high = sorted(along_across(bare, side)[0] for side in sides)
@@ -115,7 +115,7 @@ def _overlap(a: Opening, b: Opening) -> bool:
 
 
 def points_on_walls(walls: Sequence[Wall]) -> list[list[float]]:
-    """Where along each wall others end on it or cross it [m]."""
+    """Where others end on or cross each wall, as distances along it [m]."""
     lines = wall_lines(walls)
     cuts: list[list[float]] = [[] for _ in walls]
     first, second = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=TOLERANCE_M)
@@ -136,7 +136,7 @@ def points_on_walls(walls: Sequence[Wall]) -> list[list[float]]:
 
 
 def line_crossing(a: Wall, b: Wall, min_sine: float = 1e-3) -> Point | None:
-    """Where the lines of two walls cross; None where the sine of their angle is below a limit."""
+    """Where the lines of two walls cross; None if the sine of their angle is below a limit."""
     (ux, uy), (vx, vy) = direction(a), direction(b)
     sine = ux * vy - uy * vx
     if abs(sine) < min_sine:

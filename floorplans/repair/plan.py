@@ -1,4 +1,4 @@
-"""Mend a plan in what is safe: walls that almost meet, walls drawn twice, the outline with them."""
+"""Safe repairs of a plan: walls that almost meet, duplicate walls, the outline with them."""
 
 from __future__ import annotations
 
@@ -16,42 +16,42 @@ from floorplans.walls import TOLERANCE_M, Point
 
 
 @dataclass(frozen=True)
-class Mended:
-    """A plan after mending, and what was done, in order."""
+class RepairedPlan:
+    """A repaired plan, and the changes in order."""
 
     plan: UncheckedPlan
     changes: tuple[Change, ...]
 
     def toml(self) -> str:
-        """Text of the plan's file; it begins with a note of what was changed."""
+        """Text of the plan's file; it begins with a comment that lists the changes."""
         note = ["# Repaired:", *(f"#   {c}" for c in self.changes)]
         return "\n".join(note) + "\n\n" + dumps(self.plan)
 
 
-def mend(plan: UncheckedPlan, reach_m: float = REACH_M) -> Mended:
-    """Make walls meet that almost meet, make one of walls drawn twice, and let the outline follow.
+def repair_plan(plan: UncheckedPlan, reach_m: float = REACH_M) -> RepairedPlan:
+    """Make walls meet that almost meet, merge duplicate walls, and adjust the outline.
 
     Parameters
     ----------
     plan : UncheckedPlan
-        Its numbers are in order.
+        Its numbers are valid.
     reach_m : float
-        Nothing is moved farther than walls are thick and this [m].
+        Nothing is moved farther than this plus the walls' thickness [m].
     """
-    repaired = repair_walls(plan.walls, reach_m)
-    mended = replace(plan, walls=repaired.walls) if repaired.changes else plan
-    followed, moves = _follow(mended, reach_m)
-    if _n_faults(followed) < _n_faults(mended):
-        return Mended(followed, (*repaired.changes, *moves))
-    return Mended(mended, repaired.changes)
+    walls, changes = repair_walls(plan.walls, reach_m)
+    repaired = replace(plan, walls=walls) if changes else plan
+    adjusted, moves = _outline_on_walls(repaired, reach_m)
+    if _n_faults(adjusted) < _n_faults(repaired):
+        return RepairedPlan(adjusted, (*changes, *moves))
+    return RepairedPlan(repaired, changes)
 
 
 def _n_faults(plan: UncheckedPlan) -> int:
     return sum(1 for _ in building_faults(plan))
 
 
-def _follow(plan: UncheckedPlan, reach_m: float) -> tuple[UncheckedPlan, list[Change]]:
-    """Move corners of the outline onto the wall ends they are beside."""
+def _outline_on_walls(plan: UncheckedPlan, reach_m: float) -> tuple[UncheckedPlan, list[Change]]:
+    """Move corners of the outline to the wall ends beside them."""
     ends = np.array([end for wall in plan.walls for end in (wall.start, wall.end)]).reshape(-1, 2)
     reach = np.array([wall.thickness_m / 2 + reach_m for wall in plan.walls]).repeat(2)
     moves: dict[Point, Point] = {}

@@ -1,12 +1,12 @@
-"""Mend walls that a drawing left almost right: ends that nearly meet, walls drawn twice.
+"""Repair of walls as drawings leave them: ends that almost meet, duplicate walls.
 
-Two walls are meant to meet where an end of one lies in the body of the other, or a small reach
-beyond it: the end is moved along its wall until the centre lines cross. Walls that run along each
-other within that reach are one wall.
+Two walls should meet where an end of one lies in the body of the other, or within a small reach of
+it: the end is moved along its wall to where the centre lines cross. Walls that run along each other
+within that reach are merged.
 
-    walls = one wall where walls run along each other        repair_lines
-    walls = ends moved to where centre lines cross           repair_ends
-    again, until nothing changes
+    merge walls that run along each other        collinear
+    move ends to where centre lines cross        ends
+    repeat until nothing changes
 
 Openings stay where they are in the plan.
 """
@@ -14,8 +14,9 @@ Openings stay where they are in the plan.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -25,7 +26,7 @@ from floorplans.repair.ends import snap_ends
 from floorplans.repair.moves import Change, moved_wall, points_on_walls
 from floorplans.walls import TOLERANCE_M, Opening, Wall
 
-__all__ = ["Change", "Repaired", "repair_walls", "split_at_junctions"]
+__all__ = ["Change", "RepairedWalls", "repair_walls", "split_at_junctions"]
 
 REACH_M = 0.05
 """By default, gaps up to this width are closed [m]."""
@@ -33,32 +34,31 @@ REACH_M = 0.05
 _MAX_PASSES = 8
 
 
-@dataclass(frozen=True)
-class Repaired:
-    """Walls after the repair, and what was done to them, in order."""
+class RepairedWalls(NamedTuple):
+    """Repaired walls, and the changes in order."""
 
     walls: tuple[Wall, ...]
     changes: tuple[Change, ...]
 
 
 def repair_walls(
-    walls: Sequence[Wall], reach_m: float = REACH_M, thickness_share: float = 0.0
-) -> Repaired:
-    """Make walls meet that almost meet, and make one of walls that run along each other.
+    walls: Sequence[Wall], reach_m: float = REACH_M, thickness_fraction: float = 0.0
+) -> RepairedWalls:
+    """Make walls meet that almost meet, and merge walls that run along each other.
 
     Parameters
     ----------
     walls : sequence of Wall
     reach_m : float
-        Gaps up to this width are closed, and pieces shorter than it dropped [m].
-    thickness_share : float
-        Walls in one line are joined where their thicknesses differ by at most this share; the
-        joined wall has their mean thickness, weighted with length.
+        Gaps up to this width are closed, and shorter pieces dropped [m].
+    thickness_fraction : float
+        Collinear walls are joined where their thicknesses differ by at most this fraction; the
+        joined wall has their mean thickness, weighted by length.
 
     Returns
     -------
-    Repaired
-        The walls are those given, unchanged, where there is nothing to mend.
+    RepairedWalls
+        The walls are those given, unchanged, where there is nothing to repair.
 
     Examples
     --------
@@ -66,19 +66,19 @@ def repair_walls(
     >>> repair_walls([wall, Wall((2, 0.03), (2, 5), "brick", 0.2, 3)]).changes[0]
     Change(kind='moved', text='end of a wall moved 0.03 m', at=(2.0, 0.03), to=(2.0, 0.0))
     """
-    mended = tuple(walls)
+    repaired = tuple(walls)
     changes: list[Change] = []
     for _ in range(_MAX_PASSES):
         before = len(changes)
-        mended = merge_lines(mended, reach_m, thickness_share, changes)
-        mended = snap_ends(mended, reach_m, changes)
+        repaired = merge_lines(repaired, reach_m, thickness_fraction, changes)
+        repaired = snap_ends(repaired, reach_m, changes)
         if len(changes) == before:
             break
-    return Repaired(mended, tuple(changes))
+    return RepairedWalls(repaired, tuple(changes))
 
 
 def split_at_junctions(walls: Sequence[Wall]) -> tuple[Wall, ...]:
-    """Cut walls where others end on them or cross them, but not within an opening.
+    """Split walls where others end on them or cross them, but not within an opening.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def split_at_junctions(walls: Sequence[Wall]) -> tuple[Wall, ...]:
     Returns
     -------
     tuple of Wall
-        The same sheets, in pieces that touch at their ends only (openings aside).
+        The same sheets, in pieces that touch only at their ends (except at openings).
     """
     pieces: list[Wall] = []
     for wall, cuts in zip(walls, points_on_walls(walls), strict=True):
@@ -101,7 +101,7 @@ def split_at_junctions(walls: Sequence[Wall]) -> tuple[Wall, ...]:
 
 
 def _meeting_exactly(walls: Sequence[Wall]) -> tuple[Wall, ...]:
-    """Give ends that are the same point but for rounding the very same coordinates."""
+    """Give ends that differ only by rounding identical coordinates."""
     ends = np.array([end for wall in walls for end in (wall.start, wall.end)]).reshape(-1, 2)
     same = np.arange(len(ends))
     for i, j in sorted(KDTree(ends).query_pairs(TOLERANCE_M)) if len(ends) else ():
@@ -112,7 +112,7 @@ def _meeting_exactly(walls: Sequence[Wall]) -> tuple[Wall, ...]:
 
 
 def _stops(wall: Wall, cuts: Iterable[float]) -> list[float]:
-    """Where to cut a wall, its ends included: each place once, and none within an opening."""
+    """Where to split a wall, with its ends: each place once, and none within an opening."""
     stops = [0.0]
     for s in sorted(cuts):
         apart = min(s - stops[-1], wall.length_m - s) > TOLERANCE_M

@@ -1,1 +1,1 @@
-"""The TOML text of a plan: tables and values read with their place, and written in one form."""
+"""The TOML text of a plan: tables and values read with their place, and written canonically."""

@@ -1,4 +1,4 @@
-"""Typed reading of TOML tables: each value is checked where it is taken out."""
+"""Typed reading of TOML tables: each value is checked when it is read."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from floorplans.errors import Place, PlanError, unknown_name
 
 @dataclass(frozen=True)
 class Table:
-    """One TOML table with the keys its format knows.
+    """One TOML table and the keys its format allows.
 
     Attributes
     ----------
     data : mapping of str to object
         The table as `tomllib` returns it.
     known : tuple of str
-        Its possible keys; any other key raises `PlanError`.
+        Allowed keys; any other key raises `PlanError`.
     place : Place
-        Where in the file it is, for messages.
+        Its place in the file, for messages.
     """
 
     data: Mapping[str, object]
@@ -34,7 +34,7 @@ class Table:
                 raise PlanError(unknown_name("key", key, self.known), (*self.place, key))
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Return a finite number; the key may be missing if there is a default."""
+        """Return a finite number; a missing key gives the default, if there is one."""
         if key not in self.data and default is not None:
             return default
         return _number(self._required(key, "a number"), (*self.place, key))
@@ -44,7 +44,7 @@ class Table:
         return self.number(key) if key in self.data else None
 
     def text(self, key: str, default: str | None = None) -> str:
-        """Return a string; the key may be missing if there is a default."""
+        """Return a string; a missing key gives the default, if there is one."""
         if key not in self.data and default is not None:
             return default
         value = self._required(key, "a string")
@@ -88,7 +88,7 @@ class Table:
 
 
 def as_table(value: object, known: tuple[str, ...] | None, place: Place) -> Table:
-    """Return a value as a table; raise `PlanError` if it is none. None: it may have any keys."""
+    """Return a value as a table; raise `PlanError` if it is not one. None allows any keys."""
     if not isinstance(value, dict):
         raise _wrong_type("a table", value, place)
     data = cast("dict[str, object]", value)
@@ -96,7 +96,7 @@ def as_table(value: object, known: tuple[str, ...] | None, place: Place) -> Tabl
 
 
 def as_points(value: object, place: Place) -> list[tuple[float, float]]:
-    """Return a value as a list of points (x, y) [m]; raise `PlanError` if it is none."""
+    """Return a value as a list of points (x, y) [m]; raise `PlanError` if it is not one."""
     points = _list(value, "a list of points [x, y]", place)
     pairs = (_coordinates(point, "xy", (*place, index)) for index, point in enumerate(points))
     return [(x, y) for x, y in pairs]

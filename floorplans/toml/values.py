@@ -5,7 +5,7 @@ import json
 
 def toml_number(number: float) -> str:
     """Write the shortest number that reads back exactly."""
-    shortest = repr(float(number) + 0.0)  # adding 0 makes -0.0, which equals 0.0, the same text
+    shortest = repr(float(number) + 0.0)  # adding 0 turns -0.0 into 0.0, which equals it
     return shortest.removesuffix(".0")
 
 

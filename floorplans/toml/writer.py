@@ -1,4 +1,4 @@
-"""FloorPlan -> TOML text, in one tidy and stable form."""
+"""FloorPlan -> TOML text in canonical form."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FORMAT_VERSION = 1
 def dumps(plan: UncheckedPlan) -> str:
     """Write a plan as TOML text; `floorplans.loads` gives an equal plan back.
 
-    Equal plans give equal texts: keys come in a fixed order, values that are the format's defaults
+    Equal plans give equal texts: keys are in a fixed order, values equal to the format's defaults
     are left out, and numbers are the shortest that read back exactly.
     """
     blocks = ["\n".join(_top_level(plan)), *write_materials(plan.materials)]

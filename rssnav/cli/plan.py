@@ -1,4 +1,4 @@
-"""``rssnav plan``: look at floor plans, check them, export them."""
+"""``rssnav plan``: show, check, import and export floor plans."""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -32,7 +32,7 @@ def add_to(parent: typer.Typer) -> None:
     parent.add_typer(
         app,
         name="plan",
-        help="Look at floor plans, check them, export them.",
+        help="Show, check, import and export floor plans.",
         epilog=examples("rssnav plan list", "rssnav plan show flat -o flat.png"),
     )
 
@@ -77,7 +77,7 @@ def show(
             "-o",
             "--output",
             metavar="FILE",
-            help="Draw into a .png, .svg or .pdf; an .html or .glb is a view to turn and zoom.",
+            help="Draw into a .png, .svg or .pdf; an .html or .glb is an interactive 3D view.",
         ),
     ] = None,
     view: Annotated[

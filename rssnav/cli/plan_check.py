@@ -1,4 +1,4 @@
-"""``rssnav plan check``: everything wrong or doubtful about a plan, and what is safe to mend."""
+"""``rssnav plan check``: errors and warnings of a plan, and safe repairs."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -16,7 +16,7 @@ from floorplans import FloorPlan
 from floorplans.checks.inspection import Finding, inspect
 from floorplans.checks.plan import faults, number_faults
 from floorplans.loading import builtin_names, loads_unchecked, read_text
-from floorplans.repair.plan import Mended, mend
+from floorplans.repair.plan import RepairedPlan, repair_plan
 from floorplans.repair.walls import Change
 from floorplans.unchecked import PlanFile
 from rssnav.cli.console import note, print_json, print_table
@@ -44,7 +44,7 @@ def check(
         bool,
         typer.Option(
             "--fix",
-            help="Mend what is safe first: walls that almost meet, walls drawn twice.",
+            help="First repair what is safe: walls that almost meet, duplicate walls.",
         ),
     ] = False,
     output: Annotated[
@@ -53,16 +53,15 @@ def check(
             "-o",
             "--output",
             metavar="FILE",
-            help="Where --fix writes the mended plan.",
-            show_default="PLAN itself; what it was stays beside it as PLAN.bak",
+            help="Where --fix writes the repaired plan.",
+            show_default="PLAN itself; the old one is kept as PLAN.bak",
         ),
     ] = None,
     as_json: Json = False,
 ) -> None:
     """Check a plan: the file, the walls, the rooms, and whether the source can be reached.
 
-    Tells everything found, with coordinates. Warnings are for you to judge; at an error it ends
-    with 1.
+    Reports all findings with coordinates. Warnings are for you to judge; errors give exit code 1.
     """
     if output is not None and not fix:
         raise typer.BadParameter("only --fix writes a file.", param_hint="--output")
@@ -72,31 +71,31 @@ def check(
     changes: tuple[Change, ...] = ()
     if fix:
         if plan in builtin_names():
-            raise typer.BadParameter("a built-in plan cannot be mended.", param_hint="--fix")
+            raise typer.BadParameter("a built-in plan cannot be repaired.", param_hint="--fix")
         if any(number_faults(file.plan)):
             _fail(file, origin)
-        mended = mend(file.plan)
-        changes = mended.changes
-        _write(mended, text, Path(plan), output)
+        repaired = repair_plan(file.plan)
+        changes = repaired.changes
+        _write(repaired, text, Path(plan), output)
         if changes:
-            file, plan = PlanFile.of(mended.plan), str(output or plan)
+            file, plan = PlanFile.of(repaired.plan), str(output or plan)
     _report(file, plan, changes, as_json)
 
 
-def _write(mended: Mended, old_text: str, path: Path, output: Path | None) -> None:
-    """Write a mended plan, keep the old one beside it where it is replaced, and say so."""
-    if not mended.changes:
-        note("nothing that is safe to mend")
+def _write(repaired: RepairedPlan, old_text: str, path: Path, output: Path | None) -> None:
+    """Write a repaired plan; keep the old one beside it where it is replaced."""
+    if not repaired.changes:
+        note("nothing to repair")
         return
     target = output or path
     if target == path:
         with atomic_write(path.with_name(path.name + ".bak")) as beside:
             beside.write_text(old_text, encoding="utf-8", newline="\n")
     with atomic_write(target) as beside:
-        beside.write_text(mended.toml(), encoding="utf-8", newline="\n")
-    for change in mended.changes:
-        note(f"mended {change}")
-    kept = f"; what it was is in {path.name}.bak" if target == path else ""
+        beside.write_text(repaired.toml(), encoding="utf-8", newline="\n")
+    for change in repaired.changes:
+        note(f"repaired {change}")
+    kept = f"; the old plan is in {path.name}.bak" if target == path else ""
     note(f"wrote {target}{kept}")
 
 
@@ -112,24 +111,24 @@ def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool)
         findings += [finding for reach in flights if (finding := unreached(reach)) is not None]
         facts |= facts_of(checked)
     if as_json:
-        told = {
+        report = {
             "flights": [_row(reach) for reach in flights],
             "findings": [asdict(finding) for finding in findings],
             "changes": [asdict(change) for change in changes],
         }
-        print_json(facts | told)
+        print_json(facts | report)
     elif errors:
         if len(findings) > 1:
             _print_findings(findings)
     else:
         _print_flights(FloorPlan.of(file.plan), flights, findings)
-        print(f"\n{plan} is in order{_but(len(findings))}")
+        print(f"\n{plan} is valid{_but(len(findings))}")
     if errors:
         _fail(file, plan)
 
 
 def _fail(file: PlanFile, origin: str) -> NoReturn:
-    """Raise the first fault, as reading the plan for any other purpose does."""
+    """Raise the first fault, as loading the plan does."""
     first = next(faults(file.plan))
     raise first.located(origin, place=file.place_in_file(first.place))
 
@@ -168,7 +167,7 @@ def _print_flights(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence
 
 
 def _print_findings(findings: Sequence[Finding]) -> None:
-    """Print a table on a terminal, a line a finding elsewhere."""
+    """Print a table on a terminal, otherwise a line per finding."""
     console = Console()
     if not console.is_terminal:
         for f in findings:
@@ -184,7 +183,7 @@ def _print_findings(findings: Sequence[Finding]) -> None:
 
 
 def _what(finding: Finding) -> str:
-    """Text of a finding; that of an error begins with its place in the file already."""
+    """Text of a finding; that of an error already begins with its place in the file."""
     return finding.text if finding.severity == "error" else f"{finding.kind}: {finding.text}"
 
 

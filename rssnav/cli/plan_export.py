@@ -1,4 +1,4 @@
-"""``rssnav plan export``: write a plan in the formats of other programs."""
+"""``rssnav plan export``: write a plan in another program's format."""
 
 from pathlib import Path
 from typing import Annotated
@@ -42,7 +42,7 @@ def export(
         float | None,
         typer.Option(
             metavar="M",
-            help="Height in metres at which a ROS map looks at the walls.",
+            help="Height in metres of the section that a ROS map shows.",
             show_default="1, or half the storey where that is less",
         ),
     ] = None,
@@ -53,7 +53,7 @@ def export(
         ),
     ] = 2.4,
 ) -> None:
-    """Write a plan in the format of another program, in metres."""
+    """Write a plan in another program's format, in metres."""
     check_suffix(output, _SUFFIXES, "--output")
     options = ExportOptions(resolution, slice_height, frequency * 1e9)
     files = export_plan(floorplans.load(plan), output, options=options)

@@ -1,4 +1,4 @@
-"""What a plan is, in a few lines or as JSON."""
+"""Properties of a plan, in a few lines or as JSON."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from rssnav.cli.console import print_pairs
 
 
 def facts_of(plan: FloorPlan) -> dict[str, Any]:
-    """Tell what a plan is, for programs."""
+    """Return the properties of a plan, for JSON."""
     return {
         "title": plan.name,
         "bounds_m": plan.bounds,
@@ -23,7 +23,7 @@ def facts_of(plan: FloorPlan) -> dict[str, Any]:
 
 
 def print_facts(plan: FloorPlan) -> None:
-    """Print what a plan is, a line a property."""
+    """Print the properties of a plan, one per line."""
     print_pairs(
         [
             ("plan", plan.name),
@@ -37,7 +37,7 @@ def print_facts(plan: FloorPlan) -> None:
 
 
 def _materials(plan: FloorPlan) -> tuple[str, ...]:
-    """Names of all materials of a plan, each once."""
+    """Names of a plan's materials, each once."""
     return tuple(dict.fromkeys(sheet.name for sheet in plan.to_mesh().materials))
 
 
@@ -53,5 +53,5 @@ def size_text(plan: FloorPlan) -> str:
 
 
 def point_text(point: tuple[float, ...]) -> str:
-    """Write a point [m] without needless digits."""
+    """Write a point [m] in the fewest digits."""
     return f"({', '.join(f'{c:g}' for c in point)})"

@@ -1,4 +1,4 @@
-"""``rssnav plan import``: make a plan of a file that another program wrote."""
+"""``rssnav plan import``: create a plan from another program's file."""
 
 from collections import Counter
 from dataclasses import asdict
@@ -15,7 +15,7 @@ from rssnav.cli.options import Json, check_suffix, examples
 from rssnav.cli.plan_facts import facts_of, print_facts
 
 LISTED_CHANGES = ("closed", "dropped", "raised")
-"""Kinds of changes that are listed one by one; of the others the report tells how many."""
+"""Kinds of changes that are listed one by one; of the others the report gives the number."""
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -85,32 +85,34 @@ def import_file(
     ] = None,
     height: Annotated[
         float | None,
-        typer.Option(metavar="M", help="From floor to ceiling.", show_default="the file's, else 3"),
+        typer.Option(metavar="M", help="From floor to ceiling.", show_default="the file's, or 3"),
     ] = None,
     wall_thickness: Annotated[
         float | None,
         typer.Option(
-            metavar="M", help="Of walls whose thickness the file does not tell.", show_default="0.1"
+            metavar="M",
+            help="Of walls whose thickness the file does not state.",
+            show_default="0.1",
         ),
     ] = None,
     wall_material: Annotated[
         str | None,
         typer.Option(
             metavar="MATERIAL",
-            help="Of walls whose material the file does not tell.",
+            help="Of walls whose material the file does not state.",
             show_default="plasterboard, concrete where thick",
         ),
     ] = None,
     floor_material: Annotated[
-        str | None, typer.Option(metavar="MATERIAL", show_default="the file's, else concrete")
+        str | None, typer.Option(metavar="MATERIAL", show_default="the file's, or concrete")
     ] = None,
     ceiling_material: Annotated[
-        str | None, typer.Option(metavar="MATERIAL", show_default="the file's, else concrete")
+        str | None, typer.Option(metavar="MATERIAL", show_default="the file's, or concrete")
     ] = None,
     source: Annotated[
         str | None,
         typer.Option(
-            metavar="X,Y,Z", help="Radio source in the plan.", show_default="off the walls"
+            metavar="X,Y,Z", help="Transmitter in the plan.", show_default="away from walls"
         ),
     ] = None,
     start: Annotated[
@@ -145,10 +147,10 @@ def import_file(
     force: Annotated[bool, typer.Option("--force", help="Replace whatever is at FILE.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Make a plan of a drawing, a venue, a robot's map or a building model.
+    """Create a plan from a drawing, a venue, a robot's map or a building model.
 
-    What the file does not tell gets a default that the plan's file marks as assumed; the report
-    says what became of every layer, and what was mended.
+    What the file does not state gets a default that the plan's file marks as assumed; the report
+    lists what became of every layer, and the repairs.
     """
     check_suffix(output, (".toml",), "--output")
     options = ImportOptions(
@@ -212,11 +214,11 @@ def _print_layer_option(imported: Imported) -> None:
 
 
 def _print_changes(changes: tuple[Change, ...]) -> None:
-    """Print how many changes of each kind there were, and those that change the building."""
+    """Print the number of changes of each kind, and those that change the building."""
     if not changes:
         return
     counts = Counter(change.kind for change in changes)
-    print("mended: " + ", ".join(f"{n} {kind}" for kind, n in counts.items()))
+    print("repaired: " + ", ".join(f"{n} {kind}" for kind, n in counts.items()))
     for change in changes:
         if change.kind in LISTED_CHANGES:
             print(f"  {change}")

@@ -36,7 +36,7 @@ def new(
     match = _SIZE.fullmatch(size)
     if match is None:
         raise typer.BadParameter(
-            f"{size!r} is no size; give width x depth in metres, such as 40x25.",
+            f"{size!r} is not a size; give width x depth in metres, such as 40x25.",
             param_hint="--size",
         )
     try:

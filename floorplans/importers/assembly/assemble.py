@@ -1,4 +1,4 @@
-"""Draft -> plan: walls that meet, openings in their walls, an outline, defaults for the rest."""
+"""Draft -> plan: walls that meet, attached openings, an outline, defaults for the rest."""
 
 from __future__ import annotations
 
@@ -11,9 +11,13 @@ from shapely.geometry import Polygon
 
 from floorplans.checks.walls import check_positive
 from floorplans.errors import PlanError, unknown_name
-from floorplans.importers.assembly.openings import bridge, hang
-from floorplans.importers.assembly.outline import Storey, enclose
-from floorplans.importers.assembly.source_and_start import SOURCE_HEIGHT_M, Places, place
+from floorplans.importers.assembly.openings import attach_openings, close_gaps
+from floorplans.importers.assembly.outline import Storey, find_outline
+from floorplans.importers.assembly.source_and_start import (
+    SOURCE_HEIGHT_M,
+    SourceAndStart,
+    choose_source_and_start,
+)
 from floorplans.importers.defaults import (
     DOOR_HEAD_M,
     DOOR_MATERIAL,
@@ -38,15 +42,15 @@ from floorplans.repair.moves import DECIMALS, Change, tidy_point
 from floorplans.repair.walls import REACH_M, repair_walls
 from floorplans.walls import TOLERANCE_M, Wall
 
-THICKNESS_SHARE = 0.3
-"""Walls in one line are joined where their thicknesses differ by at most this share."""
+THICKNESS_FRACTION = 0.3
+"""Collinear walls are joined where their thicknesses differ by at most this fraction."""
 MAX_WALLS = 20_000
 MAX_SIDE_M = 2_000.0
 
 
 @dataclass(frozen=True)
 class _Building:
-    """Storey and openings, moved to where the plan has them."""
+    """The storey in the plan's coordinates."""
 
     outline: Polygon
     walls: tuple[Wall, ...]
@@ -55,7 +59,7 @@ class _Building:
 
 
 def assemble(draft: Draft, options: ImportOptions, source_file: str) -> Imported:
-    """Make a plan of what a reader found.
+    """Create a plan from a draft.
 
     Parameters
     ----------
@@ -71,7 +75,7 @@ def assemble(draft: Draft, options: ImportOptions, source_file: str) -> Imported
     Raises
     ------
     PlanError
-        When no region is closed by the walls, or the plan would not pass its checks.
+        When the walls enclose no region, or the plan fails its checks.
     """
     _check(draft, options)
     height_m = options.height_m or draft.height_m or HEIGHT_M
@@ -100,7 +104,7 @@ def assemble(draft: Draft, options: ImportOptions, source_file: str) -> Imported
 
 
 def _check(draft: Draft, options: ImportOptions) -> None:
-    """Refuse what would be slow or senseless, before any work."""
+    """Reject input that is too large or invalid."""
     if not draft.walls:
         raise PlanError("no walls were found in the file")
     if len(draft.walls) > MAX_WALLS:
@@ -114,7 +118,7 @@ def _check(draft: Draft, options: ImportOptions) -> None:
     side_m = max(x_max - x_min, y_max - y_min)
     if side_m > MAX_SIDE_M:
         raise PlanError(
-            f"the walls reach over {side_m / 1000:.3g} km, more than a building does; "
+            f"the walls extend over {side_m / 1000:.3g} km, more than any building; "
             "give the unit or scale of the file"
         )
     for key in ("height_m", "wall_thickness_m", "tolerance_m"):
@@ -128,12 +132,12 @@ def _check(draft: Draft, options: ImportOptions) -> None:
 
 
 def _walls(draft: Draft, options: ImportOptions, height_m: float) -> tuple[Wall, ...]:
-    """Walls with defaults for what the file does not tell; those without length left out."""
+    """Walls with defaults for what the file does not state, without those of zero length."""
     walls = (
         Wall(
             start=tidy_point(*raw.start),
             end=tidy_point(*raw.end),
-            material=raw.material or options.wall_material or _usual_material(raw),
+            material=raw.material or options.wall_material or _default_wall_material(raw),
             thickness_m=round(raw.thickness_m or options.wall_thickness_m or WALL_THICKNESS_M, 4),
             height_m=min(raw.height_m or height_m, height_m),
         )
@@ -142,7 +146,7 @@ def _walls(draft: Draft, options: ImportOptions, height_m: float) -> tuple[Wall,
     return tuple(wall for wall in walls if wall.length_m > TOLERANCE_M)
 
 
-def _usual_material(raw: RawWall) -> str:
+def _default_wall_material(raw: RawWall) -> str:
     thick = raw.thickness_m is not None and raw.thickness_m >= THICK_M
     return THICK_WALL_MATERIAL if thick else WALL_MATERIAL
 
@@ -150,27 +154,27 @@ def _usual_material(raw: RawWall) -> str:
 def _building(
     draft: Draft, walls: Sequence[Wall], options: ImportOptions, height_m: float
 ) -> _Building:
-    """Make walls meet, find the outline, and hang the openings."""
+    """Make walls meet, find the outline, and attach the openings."""
     order = {"door": 0, "passage": 1, "window": 2}
     openings = sorted(draft.openings, key=lambda opening: order[opening.kind])
     reach_m = options.tolerance_m or REACH_M
-    mended = repair_walls(bridge(walls, openings), reach_m, THICKNESS_SHARE)
-    storey = enclose(mended.walls, draft.outline, height_m)
-    joined = merge_lines(storey.walls, 10 * TOLERANCE_M, 0.0, [], sideways_share=0.0)
-    storey = Storey(storey.outline, joined, (*mended.changes, *storey.changes))
+    repaired = repair_walls(close_gaps(walls, openings), reach_m, THICKNESS_FRACTION)
+    storey = find_outline(repaired.walls, draft.outline, height_m)
+    joined = merge_lines(storey.walls, 10 * TOLERANCE_M, 0.0, [], sideways_fraction=0.0)
+    storey = Storey(storey.outline, joined, (*repaired.changes, *storey.changes))
     origin = draft.origin
     if origin is None:
         x, y, *_ = storey.outline.bounds
         origin = Origin(x, y, "the file, in metres")
         storey, openings = _moved(storey, openings, -x, -y)
-    hung = hang(storey.walls, openings, storey.outline)
-    return _Building(storey.outline, hung.walls, (*storey.changes, *hung.changes), origin)
+    walls, dropped = attach_openings(storey.walls, openings, storey.outline)
+    return _Building(storey.outline, walls, (*storey.changes, *dropped), origin)
 
 
 def _moved(
     storey: Storey, openings: Sequence[RawOpening], d_x: float, d_y: float
 ) -> tuple[Storey, list[RawOpening]]:
-    """Move a storey and openings by (d_x, d_y) [m]."""
+    """Translate a storey and openings by (d_x, d_y) [m]."""
 
     def to(point: tuple[float, float]) -> tuple[float, float]:
         return tidy_point(point[0] + d_x, point[1] + d_y)
@@ -188,17 +192,17 @@ def _moved(
     )
 
 
-def _places(building: _Building, options: ImportOptions, height_m: float) -> Places:
+def _places(building: _Building, options: ImportOptions, height_m: float) -> SourceAndStart:
     source = options.source[:2] if options.source is not None else None
     if options.source is not None and options.start is not None:
-        return Places(options.source[:2], options.start, 0.0)
-    return place(building.outline, building.walls, height_m, source)
+        return SourceAndStart(options.source[:2], options.start, 0.0)
+    return choose_source_and_start(building.outline, building.walls, height_m, source)
 
 
 def _assumptions(
-    draft: Draft, options: ImportOptions, plan: FloorPlan, places: Places
+    draft: Draft, options: ImportOptions, plan: FloorPlan, places: SourceAndStart
 ) -> Iterator[Assumption]:
-    """What neither file nor user told, in the order of the plan file."""
+    """What neither the file nor the user states, in the order of the plan file."""
     if options.height_m is None and draft.height_m is None:
         yield Assumption("height_m", f"{plan.height_m:g}", "the file gives no height of the storey")
     for key in ("floor_material", "ceiling_material"):
@@ -206,10 +210,10 @@ def _assumptions(
             yield Assumption(key, getattr(plan, key), "the file names no material")
     if options.source is None:
         yield Assumption(
-            "source", f"{list(plan.source)}", "the file knows no source; off the walls"
+            "source", f"{list(plan.source)}", "the file states no source; away from walls"
         )
     if options.start is None:
-        why = f"the farthest cell as one walks, {places.way_m:.0f} m from the source"
+        why = f"the cell with the longest walk from the source, {places.distance_m:.0f} m"
         yield Assumption("start", f"{list(plan.start)}", why)
     yield from _wall_assumptions(draft, options)
     yield from _opening_assumptions(draft)

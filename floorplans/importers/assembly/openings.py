@@ -1,9 +1,10 @@
-"""Doors and windows, hung into the walls they stand in."""
+"""Doors and windows attached to their walls."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import shapely
 from shapely.geometry import LineString, Point, Polygon
@@ -32,28 +33,27 @@ from floorplans.walls import TOLERANCE_M, Opening, Wall
 from floorplans.walls import Point as Point2
 
 _BESIDE_M = 0.3
-"""How far beside its wall's body the middle of an opening may be drawn [m]."""
+"""Largest distance from a wall's body to the middle of its opening [m]."""
 _FRAME_M = 0.4
-"""How far a gap may go on beyond an opening at each side [m]."""
+"""How far a gap may extend beyond an opening on each side [m]."""
 _TOUCH_M = 0.05
 _ON_EDGE_M = 1e-5
 _MIN_FRACTION = 0.5
 """Fraction of an opening's width that must lie in its wall."""
 
 
-@dataclass(frozen=True)
-class Hung:
-    """Walls with their openings, and the openings there was no wall for."""
+class WallsWithOpenings(NamedTuple):
+    """Walls with their openings, and the openings dropped for want of a wall."""
 
     walls: tuple[Wall, ...]
     changes: tuple[Change, ...]
 
 
-def bridge(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall, ...]:
-    """Fill the gaps of walls that are broken at their doors and windows.
+def close_gaps(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall, ...]:
+    """Close the gaps of walls that are interrupted at doors and windows.
 
-    A gap is filled where an opening reaches from the end of a wall to the next wall in the same
-    line, or to one across it; the filling looks like the longest of the walls in line.
+    A gap is closed where an opening reaches from the end of a wall to the next collinear wall or to
+    one across. The new wall has the properties of the longest collinear one.
 
     Parameters
     ----------
@@ -63,24 +63,24 @@ def bridge(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall,
     Returns
     -------
     tuple of Wall
-        Those given, then the fillings.
+        Those given, then the new ones.
     """
     if not walls:
         return ()
     tree = shapely.STRtree(wall_lines(walls))
     thickest_m = max(wall.thickness_m for wall in walls)
-    fillings: list[Wall] = []
+    new: list[Wall] = []
     for opening in openings:
         far_m = opening.width_m / 2 + thickest_m + _BESIDE_M
         near = sorted(tree.query(Point(opening.centre), "dwithin", distance=far_m).tolist())
-        filling = _filling(opening, [walls[i] for i in near])
-        if filling is not None:
-            fillings.append(filling)
-    return (*walls, *fillings)
+        wall = _wall_in_gap(opening, [walls[i] for i in near])
+        if wall is not None:
+            new.append(wall)
+    return (*walls, *new)
 
 
-def _filling(opening: RawOpening, near: Sequence[Wall]) -> Wall | None:
-    """Wall in the gap that an opening fills; None where it stands in a wall or in no gap."""
+def _wall_in_gap(opening: RawOpening, near: Sequence[Wall]) -> Wall | None:
+    """Wall in the gap that an opening spans; None where it lies in a wall or in no gap."""
     if any(_is_in(opening, wall) for wall in near):
         return None
     in_line = [wall for wall in near if _is_in_line(opening, wall)]
@@ -99,7 +99,7 @@ def _filling(opening: RawOpening, near: Sequence[Wall]) -> Wall | None:
 
 @dataclass(frozen=True)
 class _Contact:
-    """Stretch of a line in which another wall stands, and where a gap before and after it ends."""
+    """Interval of a line that another wall occupies, and where gaps before and after it end."""
 
     low: float
     high: float
@@ -108,7 +108,7 @@ class _Contact:
 
 
 def _contact(line: Wall, other: Wall) -> _Contact | None:
-    """Where a wall in line with another one, or across it, stands on the other's line."""
+    """Where a wall along or across another one meets its line; None if it does not."""
     ends = [along_across(line, end) for end in (other.start, other.end)]
     (s0, t0), (s1, t1) = ends
     if max(abs(t0), abs(t1)) < (line.thickness_m + other.thickness_m) / 2:
@@ -123,7 +123,7 @@ def _contact(line: Wall, other: Wall) -> _Contact | None:
 
 
 def _at(wall: Wall, s: float) -> Point2:
-    """Point at a distance along a wall's line, before its start or beyond its end too."""
+    """Point at a distance along a wall's line, also before its start or beyond its end."""
     ux, uy = direction(wall)
     return tidy_point(wall.start[0] + s * ux, wall.start[1] + s * uy)
 
@@ -143,45 +143,47 @@ def _is_in(opening: RawOpening, wall: Wall) -> bool:
     return on_wall and _is_in_line(opening, wall)
 
 
-def hang(walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon) -> Hung:
-    """Cut openings into the walls they stand in.
+def attach_openings(
+    walls: Sequence[Wall], openings: Sequence[RawOpening], outline: Polygon
+) -> WallsWithOpenings:
+    """Attach openings to the walls they lie in.
 
     Parameters
     ----------
     walls : sequence of Wall
     openings : sequence of RawOpening
-        Doors before windows: of two that overlap the earlier one stays.
+        Doors before windows: of two that overlap, the earlier one stays.
     outline : shapely.geometry.Polygon
-        Openings in its edge get a filling.
+        Doors on its edge are filled.
 
     Returns
     -------
-    Hung
+    WallsWithOpenings
     """
     tree = shapely.STRtree(wall_lines(walls))
     thickest_m = max(wall.thickness_m for wall in walls)
     changes: list[Change] = []
-    shares: list[list[Opening]] = [list(wall.openings) for wall in walls]
+    by_wall: list[list[Opening]] = [list(wall.openings) for wall in walls]
     edge = outline.boundary.buffer(_ON_EDGE_M)
     for raw in openings:
         near = tree.query(Point(raw.centre), "dwithin", distance=thickest_m / 2 + _BESIDE_M)
         hosts = [i for i in near.tolist() if _is_in(raw, walls[i])]
         if not hosts:
             changes.append(
-                Change("dropped", f"{raw.kind} that stands in no wall dropped", raw.centre)
+                Change("dropped", f"{raw.kind} that lies in no wall dropped", raw.centre)
             )
             continue
         i = min(hosts, key=lambda i: (abs(along_across(walls[i], raw.centre)[1]), i))
-        _add(shares[i], _opening(raw, walls[i], edge))
-    hung = [
-        replace(wall, openings=tuple(sorted(share, key=lambda o: (o.offset_m, o.sill_m))))
-        for wall, share in zip(walls, shares, strict=True)
-    ]
-    return Hung(tuple(hung), tuple(changes))
+        _add(by_wall[i], _opening(raw, walls[i], edge))
+    attached = tuple(
+        replace(wall, openings=tuple(sorted(own, key=lambda o: (o.offset_m, o.sill_m))))
+        for wall, own in zip(walls, by_wall, strict=True)
+    )
+    return WallsWithOpenings(attached, tuple(changes))
 
 
 def _opening(raw: RawOpening, wall: Wall, edge: BaseGeometry) -> Opening:
-    """Opening of a wall, with defaults for what the file does not tell."""
+    """Opening of a wall, with defaults for what the file does not state."""
     s, _ = along_across(wall, raw.centre)
     low, high = max(s - raw.width_m / 2, 0.0), min(s + raw.width_m / 2, wall.length_m)
     low, high = tidy_point(low, high)
@@ -206,21 +208,21 @@ def _opening(raw: RawOpening, wall: Wall, edge: BaseGeometry) -> Opening:
 
 
 def _on_edge(wall: Wall, low: float, high: float, edge: BaseGeometry) -> bool:
-    """Whether any of a stretch of a wall lies in the edge of the outline."""
-    stretch = LineString([wall.point_at(low), wall.point_at(high)])
-    return edge.intersection(stretch).length > 3 * _ON_EDGE_M
+    """Whether a section of a wall lies on the edge of the outline."""
+    section = LineString([wall.point_at(low), wall.point_at(high)])
+    return edge.intersection(section).length > 3 * _ON_EDGE_M
 
 
-def _add(share: list[Opening], new: Opening) -> None:
-    """Add an opening to those of a wall: joined with one of its kind, cut where others are."""
-    for i, old in enumerate(share):
+def _add(openings: list[Opening], new: Opening) -> None:
+    """Add an opening to those of a wall: joined with one of its kind, dropped where it overlaps."""
+    for i, old in enumerate(openings):
         apart_m = max(old.offset_m, new.offset_m) - min(old.end_m, new.end_m)
         if apart_m <= LEAF_GAP_M and same_kind(old, new):
             low, high = min(old.offset_m, new.offset_m), max(old.end_m, new.end_m)
-            share.pop(i)
-            _add(share, replace(old, offset_m=low, width_m=high - low))
+            openings.pop(i)
+            _add(openings, replace(old, offset_m=low, width_m=high - low))
             return
-    for old in share:
+    for old in openings:
         over = min(old.head_m, new.head_m) - max(old.sill_m, new.sill_m) > TOLERANCE_M
         if (
             over
@@ -228,4 +230,4 @@ def _add(share: list[Opening], new: Opening) -> None:
             and new.offset_m < old.end_m - TOLERANCE_M
         ):
             return
-    share.append(new)
+    openings.append(new)

@@ -1,4 +1,4 @@
-"""The outline of a storey, found from its walls, and walls brought to its inside."""
+"""The outline of a storey, found from its walls, and the walls inside it."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ from floorplans.repair.walls import split_at_junctions
 from floorplans.walls import TOLERANCE_M, Wall
 
 _GAPS_M = (0.0, 0.3, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0)
-"""Gaps in the outline that are closed: tried in this order, the least that does it."""
+"""Widths up to which gaps in the outline are closed; tried in order until one suffices [m]."""
 _ENOUGH = 0.02
-"""A wider gap is closed only if it brings this share of all walls' length inside."""
+"""Wider gaps are closed only if that encloses this additional fraction of the walls' length."""
 _ON_EDGE_M = 1e-5
 
 
 @dataclass(frozen=True)
 class Storey:
-    """Walls in and on an outline, and what was done to get there."""
+    """Walls in and on an outline, and the changes made."""
 
     outline: Polygon
     walls: tuple[Wall, ...]
     changes: tuple[Change, ...]
 
 
-def enclose(walls: Sequence[Wall], given: Polygon | None, height_m: float) -> Storey:
-    """Find what the walls close in, close gaps where they must be, drop what is outside.
+def find_outline(walls: Sequence[Wall], given: Polygon | None, height_m: float) -> Storey:
+    """Find the outline that walls enclose; close gaps where necessary, drop walls outside.
 
     Parameters
     ----------
     walls : sequence of Wall
-        They meet where they should (`floorplans.repair.walls`).
+        Repaired (`floorplans.repair.walls`).
     given : shapely.geometry.Polygon or None
-        What the file says the storey covers: regions outside it are left out.
+        What the storey covers according to the file: regions outside it are left out.
     height_m : float
-        Of the ceiling; walls in the outline are raised to it [m].
+        Of the ceiling; walls on the outline are raised to it [m].
 
     Returns
     -------
@@ -53,7 +53,7 @@ def enclose(walls: Sequence[Wall], given: Polygon | None, height_m: float) -> St
     Raises
     ------
     PlanError
-        When the walls close no region.
+        When the walls enclose no region.
     """
     pieces = split_at_junctions(walls)
     outline, links = _best_region(pieces, given)
@@ -67,7 +67,7 @@ def enclose(walls: Sequence[Wall], given: Polygon | None, height_m: float) -> St
 
 
 def on_edge(walls: Sequence[Wall], outline: Polygon) -> NDArray[np.bool_]:
-    """Which walls lie in the outline, (n,)."""
+    """Which walls lie on the outline, (n,)."""
     edge = outline.boundary.buffer(_ON_EDGE_M)
     shapely.prepare(edge)
     return np.array(shapely.covers(edge, wall_lines(walls)), dtype=np.bool_)
@@ -77,7 +77,7 @@ Link = tuple[tuple[float, float], tuple[float, float]]
 
 
 def _best_region(pieces: Sequence[Wall], given: Polygon | None) -> tuple[Polygon, list[Link]]:
-    """Region that holds most of the walls, and the links it needs, for the least width of gap."""
+    """Region with most of the walls, and the links that close it, for the least width of gaps."""
     lines = wall_lines(pieces)
     total_m = float(shapely.length(lines).sum())
     best: tuple[float, Polygon, list[Link]] | None = None
@@ -87,14 +87,14 @@ def _best_region(pieces: Sequence[Wall], given: Polygon | None) -> tuple[Polygon
         region = _region(lines, links[lengths_m <= gap_m], given)
         if region is None:
             continue
-        share = _length_inside(lines, region) / total_m
-        if best is None or share > best[0] + _ENOUGH:
-            best = (share, region, _open_stretches(region, lines))
+        inside = _length_inside(lines, region) / total_m
+        if best is None or inside > best[0] + _ENOUGH:
+            best = (inside, region, _open_sections(region, lines))
         if best[0] > 1 - _ENOUGH:
             break
     if best is None:
         raise PlanError(
-            "the walls close no region, even with gaps of "
+            "the walls enclose no region, even with gaps of "
             f"{_GAPS_M[-1]:g} m closed; check which layers hold the walls, and the unit"
         )
     outline = best[1].simplify(TOLERANCE_M / 10)
@@ -102,8 +102,8 @@ def _best_region(pieces: Sequence[Wall], given: Polygon | None) -> tuple[Polygon
     return outline, best[2]
 
 
-def _open_stretches(region: Polygon, lines: NDArray[np.object_]) -> list[Link]:
-    """Sides of a region, cut wherever walls or links meet, that are no walls."""
+def _open_sections(region: Polygon, lines: NDArray[np.object_]) -> list[Link]:
+    """Sides of a region without walls, split wherever walls or links meet."""
     sides = [
         ((float(a[0]), float(a[1])), (float(b[0]), float(b[1])))
         for ring in (region.exterior, *region.interiors)
@@ -118,9 +118,9 @@ def _open_stretches(region: Polygon, lines: NDArray[np.object_]) -> list[Link]:
 def _region(
     lines: NDArray[np.object_], links: NDArray[np.float64], given: Polygon | None
 ) -> Polygon | None:
-    """Largest connected region that lines and links close in; None if there is none."""
-    ways = np.array(shapely.linestrings(links), dtype=np.object_)
-    noded = shapely.union_all(np.concatenate([lines, ways]))
+    """Largest connected region that lines and links enclose; None if there is none."""
+    closing = np.array(shapely.linestrings(links), dtype=np.object_)
+    noded = shapely.union_all(np.concatenate([lines, closing]))
     faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
     if given is not None:
         covered = shapely.area(shapely.intersection(faces, given))
@@ -135,14 +135,14 @@ def _region(
 
 
 def _length_inside(lines: NDArray[np.object_], region: Polygon) -> float:
-    """Length of the pieces in a region, its edge included [m]."""
+    """Length of the pieces in a region or on its edge [m]."""
     wide = region.buffer(_ON_EDGE_M)
     shapely.prepare(wide)
     return float(shapely.length(lines[shapely.covers(wide, lines)]).sum())
 
 
 def _closing(pieces: Sequence[Wall], links: Sequence[Link]) -> list[Wall]:
-    """Walls on links, that look like the longest of those at their ends."""
+    """Walls on links, with the properties of the longest wall at their ends."""
     tree = shapely.STRtree(wall_lines(pieces))
     longest = max(pieces, key=lambda wall: wall.length_m)
     closing: list[Wall] = []
@@ -155,7 +155,7 @@ def _closing(pieces: Sequence[Wall], links: Sequence[Link]) -> list[Wall]:
 
 
 def _inside(pieces: Sequence[Wall], outline: Polygon, changes: list[Change]) -> list[Wall]:
-    """Walls in the outline or on it; the others are dropped, and told."""
+    """Walls inside or on the outline; the others are dropped and recorded."""
     wide = outline.buffer(_ON_EDGE_M)
     shapely.prepare(wide)
     kept = shapely.covers(wide, wall_lines(pieces))
@@ -169,7 +169,7 @@ def _inside(pieces: Sequence[Wall], outline: Polygon, changes: list[Change]) -> 
 def _raised(
     walls: Sequence[Wall], outline: Polygon, height_m: float, changes: list[Change]
 ) -> tuple[Wall, ...]:
-    """Raise walls in the outline to the ceiling."""
+    """Raise walls on the outline to the ceiling."""
     raised: list[Wall] = []
     for wall, edge in zip(walls, on_edge(walls, outline).tolist(), strict=True):
         if edge and wall.height_m < height_m - TOLERANCE_M:

@@ -1,4 +1,4 @@
-"""Short ways over the gaps of walls, one of which may be where the outline goes on."""
+"""Short links across gaps between walls, candidates for closing the outline."""
 
 from __future__ import annotations
 
@@ -21,59 +21,59 @@ Lines = NDArray[np.object_]
 
 
 def gap_links(lines: Lines, max_gap_m: float) -> Segments:
-    """Ways from loose ends, and between walls that hang together, with no wall in between.
+    """Links from free ends and between groups of connected walls, without a wall in between.
 
-    From each end that touches no other wall they go to the nearest such ends, to the nearest wall,
-    and straight on; from walls that hang together, such as a pillar, to the nearest others.
+    From each free end they go to the nearest free ends, to the nearest wall, and straight ahead;
+    from each group of connected walls, such as a pillar, to the nearest walls of other groups.
 
     Parameters
     ----------
     lines : (n,) shapely lines
         Walls that meet at their ends only.
     max_gap_m : float
-        No way is longer [m].
+        Length of the longest link [m].
 
     Returns
     -------
     (n, 2, 2) float64
-        Way, end, and (x, y) [m].
+        Link, end, and (x, y) [m].
     """
     tree = shapely.STRtree(lines)
-    owner, ends, ahead = _loose_ends(lines, tree)
+    owner, ends, ahead = _free_ends(lines, tree)
     links = np.concatenate(
         [
             _to_ends(ends, max_gap_m),
             _to_walls(owner, ends, lines, tree, max_gap_m),
-            _straight_on(owner, ends, ahead * max_gap_m, lines, tree),
-            _between_parts(lines, tree, max_gap_m),
+            _straight_ahead(owner, ends, ahead * max_gap_m, lines, tree),
+            _between_groups(lines, tree, max_gap_m),
         ]
     )
     lengths = link_lengths(links)
     links = links[(lengths > 10 * TOLERANCE_M) & (lengths <= max_gap_m)]
-    return links[_free(links, tree)]
+    return links[_unobstructed(links, tree)]
 
 
 def link_lengths(links: Segments) -> NDArray[np.float64]:
-    """Length of each way [m], (n,)."""
+    """Length of each link [m], (n,)."""
     steps = links[:, 1] - links[:, 0]
     return np.hypot(steps[:, 0], steps[:, 1])
 
 
-def _loose_ends(
+def _free_ends(
     lines: Lines, tree: shapely.STRtree
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """Ends that touch no other wall: the wall's index, the end, and the way on, of length 1."""
+    """Ends that touch no other wall: the wall's index, the end, and the unit vector ahead."""
     ends = shapely.get_coordinates(lines).reshape(-1, 2)
     others = ends.reshape(-1, 2, 2)[:, ::-1].reshape(-1, 2)
     touching, _ = tree.query(_points(ends), "dwithin", distance=2 * TOLERANCE_M)
-    loose = np.flatnonzero(np.bincount(touching, minlength=len(ends)) == 1)
-    ahead = ends[loose] - others[loose]
+    free = np.flatnonzero(np.bincount(touching, minlength=len(ends)) == 1)
+    ahead = ends[free] - others[free]
     ahead /= np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
-    return loose // 2, ends[loose], ahead
+    return free // 2, ends[free], ahead
 
 
 def _to_ends(ends: NDArray[np.float64], max_gap_m: float) -> Segments:
-    """Ways between loose ends, each to a few of the nearest."""
+    """Links between free ends, each to a few of the nearest."""
     if len(ends) < 2:
         return np.empty((0, 2, 2))
     k = min(_NEAREST_ENDS + 1, len(ends))
@@ -90,7 +90,7 @@ def _to_walls(
     tree: shapely.STRtree,
     max_gap_m: float,
 ) -> Segments:
-    """Way from each loose end to the nearest wall that is not its own."""
+    """Link from each free end to the nearest other wall."""
     links = [np.empty((0, 2, 2))]
     for begin in range(0, len(ends), _CHUNK):
         points = _points(ends[begin : begin + _CHUNK])
@@ -98,34 +98,34 @@ def _to_walls(
         other = wall != owner[begin + which]
         which, wall = which[other], wall[other]
         best = _first_of_each(which, shapely.distance(points[which], lines[wall]))
-        ways = shapely.shortest_line(points[which[best]], lines[wall[best]])
-        links.append(shapely.get_coordinates(ways).reshape(-1, 2, 2))
+        shortest = shapely.shortest_line(points[which[best]], lines[wall[best]])
+        links.append(shapely.get_coordinates(shortest).reshape(-1, 2, 2))
     return np.concatenate(links)
 
 
-def _straight_on(
+def _straight_ahead(
     owner: NDArray[np.int64],
     ends: NDArray[np.float64],
-    onward: NDArray[np.float64],
+    ahead: NDArray[np.float64],
     lines: Lines,
     tree: shapely.STRtree,
 ) -> Segments:
-    """Way from each loose end straight on to the first wall."""
-    rays = np.array(shapely.linestrings(np.stack([ends, ends + onward], axis=1)), dtype=np.object_)
+    """Link from each free end straight ahead to the first wall."""
+    rays = np.array(shapely.linestrings(np.stack([ends, ends + ahead], axis=1)), dtype=np.object_)
     which, wall = tree.query(rays, "intersects")
     other = wall != owner[which]
     which, wall = which[other], wall[other]
     points = _points(ends)[which]
-    ways = np.array(
+    shortest = np.array(
         shapely.shortest_line(points, shapely.intersection(rays[which], lines[wall])),
         dtype=np.object_,
     )
-    best = _first_of_each(which, shapely.length(ways))
-    return shapely.get_coordinates(ways[best]).reshape(-1, 2, 2)
+    best = _first_of_each(which, shapely.length(shortest))
+    return shapely.get_coordinates(shortest[best]).reshape(-1, 2, 2)
 
 
-def _between_parts(lines: Lines, tree: shapely.STRtree, max_gap_m: float) -> Segments:
-    """Ways from walls that hang together to a few of the nearest that do not hang with them."""
+def _between_groups(lines: Lines, tree: shapely.STRtree, max_gap_m: float) -> Segments:
+    """Links from each group of connected walls to a few of the nearest other walls."""
     touching = tree.query(lines, "dwithin", distance=2 * TOLERANCE_M)
     graph = coo_array((np.ones(touching.shape[1]), tuple(touching)), shape=(len(lines),) * 2)
     _, labels = connected_components(graph, directed=False)
@@ -134,26 +134,26 @@ def _between_parts(lines: Lines, tree: shapely.STRtree, max_gap_m: float) -> Seg
     a, b = a[apart], b[apart]
     distance_m = shapely.distance(lines[a], lines[b])
     best = _first_of_each(labels[a] * len(lines) + b, distance_m)
-    part, rank_by = labels[a[best]], distance_m[best]
-    order = np.lexsort((rank_by, part))
-    rank = np.arange(len(order)) - np.searchsorted(part[order], part[order])
+    group, rank_by = labels[a[best]], distance_m[best]
+    order = np.lexsort((rank_by, group))
+    rank = np.arange(len(order)) - np.searchsorted(group[order], group[order])
     few = best[order[rank < _NEAREST_WALLS]]
-    ways = shapely.get_coordinates(shapely.shortest_line(lines[a[few]], lines[b[few]]))
-    return _spread(labels[a[few]], ways.reshape(-1, 2, 2))
+    links = shapely.get_coordinates(shapely.shortest_line(lines[a[few]], lines[b[few]]))
+    return _spread(labels[a[few]], links.reshape(-1, 2, 2))
 
 
-def _spread(part: NDArray[np.int64], ways: Segments) -> Segments:
-    """Ways that leave their part in directions well apart, the shortest of each direction."""
-    lengths = link_lengths(ways)
+def _spread(group: NDArray[np.int64], links: Segments) -> Segments:
+    """Links that leave their group in distinct directions, the shortest of each direction."""
+    lengths = link_lengths(links)
     kept: dict[int, list[NDArray[np.float64]]] = {}
     chosen: list[int] = []
     for i in np.argsort(lengths, kind="stable").tolist():
-        along = (ways[i, 1] - ways[i, 0]) / max(float(lengths[i]), TOLERANCE_M)
-        directions = kept.setdefault(int(part[i]), [])
+        along = (links[i, 1] - links[i, 0]) / max(float(lengths[i]), TOLERANCE_M)
+        directions = kept.setdefault(int(group[i]), [])
         if all(along @ other < _SPREAD for other in directions):
             directions.append(along)
             chosen.append(i)
-    return ways[chosen]
+    return links[chosen]
 
 
 def _first_of_each(which: NDArray[np.int64], value: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -163,15 +163,15 @@ def _first_of_each(which: NDArray[np.int64], value: NDArray[np.float64]) -> NDAr
     return order[first]
 
 
-def _free(links: Segments, tree: shapely.STRtree) -> NDArray[np.bool_]:
-    """Which ways have no wall between their ends."""
+def _unobstructed(links: Segments, tree: shapely.STRtree) -> NDArray[np.bool_]:
+    """Which links have no wall between their ends."""
     step = 0.01 * (links[:, 1] - links[:, 0])
     inner = np.stack([links[:, 0] + step, links[:, 1] - step], axis=1)
-    free = np.ones(len(links), dtype=np.bool_)
-    free[tree.query(np.array(shapely.linestrings(inner), dtype=np.object_), "intersects")[0]] = (
+    clear = np.ones(len(links), dtype=np.bool_)
+    clear[tree.query(np.array(shapely.linestrings(inner), dtype=np.object_), "intersects")[0]] = (
         False
     )
-    return free
+    return clear
 
 
 def _points(ends: NDArray[np.float64]) -> Lines:

@@ -1,4 +1,4 @@
-"""Source and start, where the user gives none."""
+"""Default positions of source and start."""
 
 from __future__ import annotations
 
@@ -20,29 +20,29 @@ SOURCE_HEIGHT_M = 1.5
 
 _STEPS = ((1, 0), (0, 1), (1, 1), (1, -1))
 _START_CLEAR_M = 0.6
-"""A start is at least as far off the walls [m], or else as far as any cell is."""
+"""Least distance of a start from walls [m], where some cell has it."""
 _AS_CLEAR_M = 0.15
 
 
 @dataclass(frozen=True)
-class Places:
-    """Source (x, y) and start (x, y) [m], and how far apart they are as one walks [m]."""
+class SourceAndStart:
+    """Source (x, y) and start (x, y) [m], and the walking distance between them [m]."""
 
     source: tuple[float, float]
     start: tuple[float, float]
-    way_m: float
+    distance_m: float
 
 
-def place(
+def choose_source_and_start(
     outline: Polygon,
     walls: Sequence[Wall],
     height_m: float,
     source: tuple[float, float] | None = None,
-) -> Places:
-    """Choose a source well off the walls, and as start the cell with the longest way to it.
+) -> SourceAndStart:
+    """Choose a source away from walls, and as start the cell with the longest walk to it.
 
-    Cells are squares of 1 m from the outline's lower left corner on; ways go over the largest set
-    of cells that one can walk between, in 8 directions, at the height of flights.
+    Cells are squares of 1 m that begin at the outline's lower left corner. Walks go in 8 directions
+    over the largest connected set of cells, at the height of flights.
 
     Parameters
     ----------
@@ -52,36 +52,38 @@ def place(
     height_m : float
         Of the ceiling [m].
     source : (float, float), optional
-        Where the source is already known to be [m].
+        A given source [m].
 
     Returns
     -------
-    Places
+    SourceAndStart
         The start is the centre of a cell.
     """
     solid = _solid(walls, min(FLYING_HEIGHT_M, height_m / 2))
-    cells, ways = _cells(outline, solid)
+    cells, steps = _cells(outline, solid)
     if not len(cells):
         inside = outline.representative_point()
-        return Places(source or (inside.x, inside.y), (inside.x, inside.y), 0.0)
+        return SourceAndStart(source or (inside.x, inside.y), (inside.x, inside.y), 0.0)
     clear_m = shapely.distance(shapely.points(cells), MultiLineString(list(solid)))
-    _, labels = connected_components(ways, directed=False)
+    _, labels = connected_components(steps, directed=False)
     if source is None:
         among = labels == np.bincount(labels).argmax()
         at = int(np.where(among, clear_m, -1.0).argmax())
         source = (float(cells[at][0]), float(cells[at][1]))
     else:
         at = int(np.hypot(*(cells - np.array(source)).T).argmin())
-    way_m = dijkstra(ways, directed=False, indices=at)
+    distance_m = dijkstra(steps, directed=False, indices=at)
     clearances = np.minimum(clear_m, _START_CLEAR_M)
-    away = np.isfinite(way_m) & (way_m > 0)
+    away = np.isfinite(distance_m) & (distance_m > 0)
     usable = away & (clearances >= clearances[away].max(initial=0.0) - _AS_CLEAR_M)
-    far = int(np.where(usable, way_m, -1.0).argmax()) if usable.any() else at
-    return Places(source, (float(cells[far][0]), float(cells[far][1])), float(way_m[far]))
+    far = int(np.where(usable, distance_m, -1.0).argmax()) if usable.any() else at
+    return SourceAndStart(
+        source, (float(cells[far][0]), float(cells[far][1])), float(distance_m[far])
+    )
 
 
 def _solid(walls: Sequence[Wall], height_m: float) -> NDArray[np.float64]:
-    """Segments (n, 2, 2) in which walls are solid at a height."""
+    """Segments (n, 2, 2) where walls are solid at a height."""
     segments = [
         (wall.point_at(low), wall.point_at(high))
         for wall in walls

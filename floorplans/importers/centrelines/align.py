@@ -1,4 +1,4 @@
-"""Walls turned into the building's own directions, and openings into those of their walls."""
+"""Walls aligned to the building's main directions, and openings to their walls."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from floorplans.importers.draft import RawOpening, RawWall
 
 _TURN = radians(1.0)
 _SIDEWAYS_M = 0.06
-"""An end is moved at most this far by a turn [m]."""
+"""A rotation moves an end by at most this [m]."""
 _NEARLY = sin(radians(8.0))
 _BESIDE_M = 0.6
 _MIN_FACE_M = 0.25
 
 
-def squared(walls: Sequence[RawWall]) -> list[RawWall]:
-    """Turn walls that nearly have one of the building's two main directions exactly into it.
+def aligned_to_main_directions(walls: Sequence[RawWall]) -> list[RawWall]:
+    """Rotate walls that nearly have one of the building's two main directions exactly into it.
 
-    The main directions, at right angles, are those of the greatest length of walls; walls turn
-    about their middles.
+    The main directions, at right angles, are those of the greatest length of walls. Walls are
+    rotated about their middles.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def squared(walls: Sequence[RawWall]) -> list[RawWall]:
 
 
 def along_walls(openings: Sequence[RawOpening], faces: NDArray[np.float64]) -> list[RawOpening]:
-    """Turn openings into the direction of the longest face beside them, if it is nearly theirs.
+    """Align openings with the longest face beside them, if it is nearly parallel.
 
     Parameters
     ----------
@@ -87,10 +87,10 @@ def along_walls(openings: Sequence[RawOpening], faces: NDArray[np.float64]) -> l
 
 
 def _main_direction(angles: NDArray[np.float64], lengths: NDArray[np.float64]) -> float:
-    """Angle in [0, pi / 2) that walls of the greatest length share, up to right angles."""
+    """Angle in [0, pi / 2) of the greatest length of walls, modulo right angles."""
     quarter = angles % (np.pi / 2)
-    shares = np.round(quarter / _TURN).astype(int) % 90
-    best = int(np.argmax(np.bincount(shares, lengths)))
+    bins = np.round(quarter / _TURN).astype(int) % 90
+    best = int(np.argmax(np.bincount(bins, lengths)))
     near = np.abs((quarter - best * _TURN + np.pi / 4) % (np.pi / 2) - np.pi / 4) <= _TURN
     mean = np.angle(np.sum(lengths[near] * np.exp(4j * quarter[near]))) / 4 % (np.pi / 2)
     axis = np.round(mean / (np.pi / 2)) * (np.pi / 2)

@@ -1,13 +1,13 @@
-"""Areas of wall, as seen from above, -> centre lines with the measured thickness.
+"""Wall areas in the plan view -> centre lines with the measured thickness.
 
-Two edges of the area that face each other across solid wall are the sides of one straight wall:
-its centre line runs half-way between them, over the stretch on which they face each other, and
-their distance is its thickness. Centre lines on about one line are then put on that line, and each
-end goes on through the solid to the next centre line it meets: to the corner, or into the T.
+Two edges of the area that face each other across solid wall are the sides of one straight wall: its
+centre line runs midway between them, where they face each other, and their distance is its
+thickness. Nearly collinear centre lines are then put on one line, and each end is extended through
+the solid to the next centre line it meets: to the corner, or into the T.
 
-What is too thick or too squat to be a wall, such as a pillar or a shaft filled in, is kept as the
-ring around it, each side of half the block's width, so that the two sides that a ray passes add up
-to what stands there.
+What is too thick or too short to be a wall, such as a pillar or a filled shaft, is kept as the ring
+around it. Each side has half the block's width, so that the two sides a ray crosses add up to the
+block.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from floorplans.importers.centrelines.axes import Axis, on_common_lines
 from floorplans.importers.draft import RawWall
 
 MAX_THICKNESS_M = 1.0
-"""What is thicker is a block, not a wall [m]."""
+"""Largest thickness of a wall; what is thicker is a block [m]."""
 
 SQUATNESS = 0.5
-"""A free-standing piece whose width is more than this share of its length is a pillar."""
+"""A free-standing piece wider than this fraction of its length is a pillar."""
 
 _PARALLEL = np.cos(np.radians(12.0))
-_FACING_SHARE = 0.6  # of the thickness two sides must at least face each other, to be a wall's
+_FACING_FRACTION = 0.6  # of the thickness, on which the two sides of a wall must face each other
 _BEND = np.sin(np.radians(1.0))
-_REACH = 2.0  # times the thickest wall is how far an end may go on to meet another wall
+_REACH = 2.0  # times the thickest wall: how far an end may be extended to meet another wall
 
 Vectors = NDArray[np.float64]
 
@@ -41,21 +41,21 @@ Vectors = NDArray[np.float64]
 def walls_of_area(
     area: BaseGeometry, tolerance_m: float, fillings: BaseGeometry | None = None
 ) -> list[RawWall]:
-    """Return the walls that an area of wall consists of.
+    """Return the walls that make up a wall area.
 
     Parameters
     ----------
     area : shapely geometry
-        Polygons [m]; those that touch or nearly touch are one.
+        Polygons [m]; those that touch or nearly touch are merged.
     tolerance_m : float
-        Gaps up to this are closed, and corners nearer than this to a side are cut off [m].
+        Gaps up to this are closed, and corners nearer than this to a side removed [m].
     fillings : shapely geometry, optional
-        Areas of doors and windows [m]: they go on the line of their wall and take its thickness.
+        Areas of doors and windows [m]: they join the line of their wall and take its thickness.
 
     Returns
     -------
     list of RawWall
-        With thickness; walls of blocks last.
+        With thickness; those of blocks last.
     """
     openings = shapely.Polygon() if fillings is None else fillings
     solid = _polygons(_closed(area.union(openings), tolerance_m).simplify(tolerance_m / 2))
@@ -66,7 +66,7 @@ def walls_of_area(
         for part in _polygons(whole.difference(shapely.union_all(blocks).buffer(1e-6)))
         if part.area > tolerance_m**2
     ]
-    found = [_marked(axis, openings) for part in thin for axis in _axes(part)]
+    found = [_with_filling_flag(axis, openings) for part in thin for axis in _axes(part)]
     axes = on_common_lines(found, whole)
     rings = [side for block in blocks for side in _ring_walls(block)]
     reach = [RawWall(axis.start, axis.end, axis.thickness_m) for axis in axes]
@@ -74,7 +74,7 @@ def walls_of_area(
 
 
 def block_walls(block: Polygon) -> list[RawWall]:
-    """Return the ring of walls around something solid, each of half its width."""
+    """Return the ring of walls around a block, each of half its width."""
     return _ring_walls(shapely.orient_polygons(block))
 
 
@@ -104,7 +104,7 @@ def _is_pillar(part: Polygon) -> bool:
 
 
 def box_sides(polygon: BaseGeometry) -> tuple[float, float]:
-    """Return width and length of the smallest box around a shape, at any angle [m]."""
+    """Return width and length of the smallest box around a shape, of any orientation [m]."""
     box = shapely.oriented_envelope(polygon)
     if not isinstance(box, Polygon):
         return 0.0, box.length
@@ -121,7 +121,7 @@ def _ring_walls(block: Polygon) -> list[RawWall]:
 
 @dataclass(frozen=True)
 class _Edges:
-    """Sides of a polygon, the solid on their left: starts, unit directions (n, 2), lengths (n,)."""
+    """Sides of a polygon, solid on their left: starts, unit directions (n, 2), lengths (n,)."""
 
     start: Vectors
     along: Vectors
@@ -151,14 +151,14 @@ def _axes(part: Polygon) -> list[Axis]:
     return [a for a in found if a is not None and inside.covers(LineString([a.start, a.end]))]
 
 
-def _marked(axis: Axis, fillings: BaseGeometry) -> Axis:
-    """Mark an axis whose middle lies in a filling."""
+def _with_filling_flag(axis: Axis, fillings: BaseGeometry) -> Axis:
+    """Flag an axis whose middle lies in a filling."""
     middle = LineString([axis.start, axis.end]).centroid
     return replace(axis, is_filling=bool(fillings.covers(middle)))
 
 
 def _axis_between(edges: _Edges, i: int, j: int) -> Axis | None:
-    """Centre line of the wall between two sides, None where they do not face each other."""
+    """Centre line of the wall between two sides; None if they do not face each other."""
     along = edges.along[i] - edges.along[j]
     along /= np.hypot(*along)
     across = np.array([-along[1], along[0]])
@@ -171,7 +171,7 @@ def _axis_between(edges: _Edges, i: int, j: int) -> Axis | None:
         return None
     near, far = (np.interp([low, high], np.sort(s[k]), t[k][np.argsort(s[k])]) for k in (0, 1))
     thickness_m = float(np.mean(far - near))
-    if not 1e-3 < thickness_m <= MAX_THICKNESS_M or high - low < _FACING_SHARE * thickness_m:
+    if not 1e-3 < thickness_m <= MAX_THICKNESS_M or high - low < _FACING_FRACTION * thickness_m:
         return None
     middle = (near + far) / 2
     start, end = (along * p + across * q for p, q in zip((low, high), middle, strict=True))
@@ -179,13 +179,13 @@ def _axis_between(edges: _Edges, i: int, j: int) -> Axis | None:
 
 
 def _joined(walls: list[RawWall], rings: list[RawWall], whole: BaseGeometry) -> list[RawWall]:
-    """Let each end go on through the solid to the nearest centre line it meets."""
+    """Extend each end through the solid to the nearest centre line it meets."""
     if not walls:
         return []
     solid = whole.buffer(1e-6)
     shapely.prepare(solid)
     reach_m = _REACH * max(wall.thickness_m or 0.0 for wall in walls)
-    long = [_lengthened(wall, solid, reach_m) for wall in walls]
+    long = [_extended(wall, solid, reach_m) for wall in walls]
     others = [*long, *(LineString([ring.start, ring.end]) for ring in rings)]
     tree = shapely.STRtree(others)
     near = [[m for m in tree.query(line).tolist() if m != k] for k, line in enumerate(long)]
@@ -194,8 +194,8 @@ def _joined(walls: list[RawWall], rings: list[RawWall], whole: BaseGeometry) -> 
     return [_reaching(wall, long[k], np.array(ends)) for k, wall in enumerate(cut)]
 
 
-def _lengthened(wall: RawWall, solid: BaseGeometry, reach_m: float) -> LineString:
-    """Lengthen a wall's centre line at both ends as far as there is solid."""
+def _extended(wall: RawWall, solid: BaseGeometry, reach_m: float) -> LineString:
+    """Extend a wall's centre line at both ends as far as there is solid."""
     a, b = np.array(wall.start), np.array(wall.end)
     step = (b - a) / np.hypot(*(b - a)) * reach_m
     ends = [_last_solid(a, a - step, solid), _last_solid(b, b + step, solid)]
@@ -203,7 +203,7 @@ def _lengthened(wall: RawWall, solid: BaseGeometry, reach_m: float) -> LineStrin
 
 
 def _last_solid(start: Vectors, end: Vectors, solid: BaseGeometry) -> Vectors:
-    """Point up to which the way from `start` to `end` stays in the solid."""
+    """Point up to which the line from `start` to `end` stays in the solid."""
     for part in shapely.get_parts(LineString([start, end]).intersection(solid)):
         points = shapely.get_coordinates(part)
         if len(points) and np.hypot(*(points - start).T).min() < 1e-5:
@@ -212,13 +212,13 @@ def _last_solid(start: Vectors, end: Vectors, solid: BaseGeometry) -> Vectors:
 
 
 def _bends(along: Vectors, other: LineString) -> bool:
-    """Whether another line goes off a direction by more than a rounding error."""
+    """Whether another line deviates from a direction by more than a rounding error."""
     a, b = shapely.get_coordinates(other)
     return abs(along[0] * (b - a)[1] - along[1] * (b - a)[0]) > _BEND * np.hypot(*(b - a))
 
 
 def _cut(wall: RawWall, long: LineString, others: list[LineString]) -> RawWall:
-    """End a lengthened wall where it meets the others, or where it ended when it meets none."""
+    """End an extended wall where it meets others, or where it ended before if it meets none."""
     a, b = np.array(wall.start), np.array(wall.end)
     length = float(np.hypot(*(b - a)))
     along = (b - a) / length
@@ -235,7 +235,7 @@ def _cut(wall: RawWall, long: LineString, others: list[LineString]) -> RawWall:
 
 
 def _reaching(wall: RawWall, long: LineString, ends: NDArray[np.object_]) -> RawWall:
-    """Let a wall go on to the ends of others that were cut at its lengthened line."""
+    """Extend a wall to the ends of others that were cut at its extended line."""
     a, b = np.array(wall.start), np.array(wall.end)
     length = float(np.hypot(*(b - a)))
     on_line = ends[np.array(shapely.dwithin(ends, long, 1e-6))]

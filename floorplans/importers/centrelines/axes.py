@@ -1,4 +1,4 @@
-"""Centre lines that lie on about one line, put on that line and joined."""
+"""Nearly collinear centre lines, put on one line and joined."""
 
 from __future__ import annotations
 
@@ -13,19 +13,21 @@ from shapely.geometry.base import BaseGeometry
 from floorplans.walls import Point
 
 _SAME_DIRECTION = np.cos(np.radians(4.0))
-_DOUBLE_DIRECTION = np.cos(np.radians(12.0))
-_DOUBLE_SHARE = 0.5  # of an axis beside a longer one, within the wall, from which it is a double
-_OFFSET_SHARE = 0.4  # of the thicker wall's thickness by which axes of one line may lie apart
-_LIKE = 1.4  # ratio of thicknesses up to which two stretches of a line are one wall
-_ACROSS_M = 1.0  # as thick as a wall across, between a short stretch and the one it belongs to
-_SHORT = 2.0  # times its thickness, a stretch takes on the thickness of its neighbour
+_DUPLICATE_DIRECTION = np.cos(np.radians(12.0))
+_DUPLICATE_FRACTION = (
+    0.5  # of an axis beside a longer one, within the wall, that makes it a duplicate
+)
+_OFFSET_FRACTION = 0.4  # of the thicker wall's thickness between collinear axes
+_LIKE = 1.4  # ratio of thicknesses up to which two sections of a line are one wall
+_ACROSS_M = 1.0  # gap up to which a short section is joined: the thickness of a wall across
+_SHORT = 2.0  # times its thickness: a shorter section takes the thickness of its neighbour
 
 
 @dataclass(frozen=True)
 class Axis:
     """A straight centre line [m] with the thickness of its wall [m].
 
-    `is_filling` tells that it is a door's or window's, which may be thinner than its wall.
+    `is_filling` marks that of a door or window, which may be thinner than its wall.
     """
 
     start: Point
@@ -45,7 +47,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class _Stretch:
+class _Section:
     """Part of a line from `low` to `high` along it [m]."""
 
     low: float
@@ -59,23 +61,23 @@ class _Stretch:
 
 
 def on_common_lines(axes: list[Axis], solid: BaseGeometry) -> list[Axis]:
-    """Put axes on common lines, and join those of like thickness with only solid between them.
+    """Put axes on common lines, and join those of similar thickness with only solid between them.
 
     Parameters
     ----------
     axes : list of Axis
     solid : shapely geometry
-        All wall [m].
+        All walls [m].
 
     Returns
     -------
     list of Axis
     """
-    return _without_doubles([a for group in _groups(axes) for a in _on_one_line(group, solid)])
+    return _without_duplicates([a for group in _groups(axes) for a in _on_one_line(group, solid)])
 
 
 def _groups(axes: list[Axis]) -> list[list[Axis]]:
-    """Group axes that lie on about one line with the longest of them."""
+    """Group axes that are nearly collinear with the longest of them."""
     groups: list[list[Axis]] = []
     for axis in sorted(axes, key=lambda axis: -axis.length_m):
         for group in groups:
@@ -91,14 +93,14 @@ def _on_line_of(first: Axis, other: Axis) -> bool:
     along = first.vector / first.length_m
     if abs(other.vector @ along) < _SAME_DIRECTION * other.length_m:
         return False
-    apart = max(first.thickness_m, other.thickness_m) * _OFFSET_SHARE
+    apart = max(first.thickness_m, other.thickness_m) * _OFFSET_FRACTION
     across = np.array([-along[1], along[0]])
     ends = np.array([other.start, other.end]) - np.array(first.start)
     return bool(np.abs(ends @ across).max() <= apart)
 
 
 def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
-    """Put a group on its line of least squares, in the direction of its longest axis."""
+    """Put a group on its mean line, in the direction of its longest axis."""
     built = [axis for axis in group if not axis.is_filling] or group
     areas = np.array([axis.length_m * axis.thickness_m * (axis in built) for axis in group])
     towards = np.array([axis.vector * np.sign(axis.vector @ group[0].vector) for axis in group])
@@ -115,20 +117,20 @@ def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
         return high <= low or LineString([point(low), point(high)]).within(solid)
 
     s = np.sort(ends @ along, axis=1)
-    stretches = [
-        _Stretch(float(low), float(high), axis.thickness_m, axis.is_filling)
+    sections = [
+        _Section(float(low), float(high), axis.thickness_m, axis.is_filling)
         for (low, high), axis in sorted(
             zip(s.tolist(), group, strict=True), key=lambda pair: pair[0]
         )
     ]
     return [
-        Axis(point(stretch.low), point(stretch.high), stretch.thickness_m)
-        for stretch in _merged(stretches, is_solid)
+        Axis(point(section.low), point(section.high), section.thickness_m)
+        for section in _merged(sections, is_solid)
     ]
 
 
-def _without_doubles(axes: list[Axis]) -> list[Axis]:
-    """Leave out axes that run within the wall of a longer one."""
+def _without_duplicates(axes: list[Axis]) -> list[Axis]:
+    """Remove axes that run within the wall of a longer one."""
     kept: list[Axis] = []
     for axis in sorted(axes, key=lambda axis: -axis.length_m):
         if not any(_covers(longer, axis) for longer in kept):
@@ -138,34 +140,34 @@ def _without_doubles(axes: list[Axis]) -> list[Axis]:
 
 def _covers(longer: Axis, axis: Axis) -> bool:
     along = longer.vector / longer.length_m
-    if abs(axis.vector @ along) < _DOUBLE_DIRECTION * axis.length_m:
+    if abs(axis.vector @ along) < _DUPLICATE_DIRECTION * axis.length_m:
         return False
     ends = np.array([axis.start, axis.end]) - np.array(longer.start)
     s = np.sort(ends @ along)
     beside = np.abs(ends @ np.array([-along[1], along[0]])).max()
     shared = min(s[1], longer.length_m) - max(s[0], 0.0)
     near = beside <= max(longer.thickness_m, axis.thickness_m) / 2
-    return bool(near and shared > _DOUBLE_SHARE * axis.length_m)
+    return bool(near and shared > _DUPLICATE_FRACTION * axis.length_m)
 
 
-def _merged(stretches: list[_Stretch], is_solid: Callable[[float, float], bool]) -> list[_Stretch]:
-    """Join neighbours of like thickness, then short ones and fillings with any.
+def _merged(sections: list[_Section], is_solid: Callable[[float, float], bool]) -> list[_Section]:
+    """Join neighbours of similar thickness, then short ones and fillings with any.
 
-    In this order, because a long wall is often made of pieces that are short one by one.
+    In this order, because a long wall often consists of short pieces.
     """
-    same = _joined(stretches, is_solid, _same_thickness, np.inf)
+    same = _joined(sections, is_solid, _same_thickness, np.inf)
     return _touching(_joined(same, is_solid, _alike, _ACROSS_M), is_solid)
 
 
 def _joined(
-    stretches: list[_Stretch],
+    sections: list[_Section],
     is_solid: Callable[[float, float], bool],
-    alike: Callable[[_Stretch, _Stretch], bool],
+    alike: Callable[[_Section, _Section], bool],
     max_gap_m: float,
-) -> list[_Stretch]:
+) -> list[_Section]:
     """Join neighbours that are alike and have only solid between them."""
-    done = stretches[:1]
-    for following in stretches[1:]:
+    done = sections[:1]
+    for following in sections[1:]:
         last = done[-1]
         if following.high <= last.high:
             continue
@@ -178,12 +180,10 @@ def _joined(
     return done
 
 
-def _touching(
-    stretches: list[_Stretch], is_solid: Callable[[float, float], bool]
-) -> list[_Stretch]:
-    """Let neighbours touch half-way, where there is solid between them."""
-    done = stretches[:1]
-    for following in stretches[1:]:
+def _touching(sections: list[_Section], is_solid: Callable[[float, float], bool]) -> list[_Section]:
+    """Make neighbours touch midway, where there is solid between them."""
+    done = sections[:1]
+    for following in sections[1:]:
         last = done[-1]
         near = following.low - last.high <= _ACROSS_M
         if near and is_solid(last.high, following.low):
@@ -194,11 +194,11 @@ def _touching(
     return done
 
 
-def _same_thickness(a: _Stretch, b: _Stretch) -> bool:
+def _same_thickness(a: _Section, b: _Section) -> bool:
     low, high = sorted((a.thickness_m, b.thickness_m))
     return a.is_filling == b.is_filling and high <= _LIKE * low
 
 
-def _alike(a: _Stretch, b: _Stretch) -> bool:
-    short = any(stretch.length_m < _SHORT * stretch.thickness_m for stretch in (a, b))
+def _alike(a: _Section, b: _Section) -> bool:
+    short = any(section.length_m < _SHORT * section.thickness_m for section in (a, b))
     return short or a.is_filling or b.is_filling or _same_thickness(a, b)

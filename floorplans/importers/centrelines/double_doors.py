@@ -47,7 +47,7 @@ def _joined(a: RawOpening, b: RawOpening) -> RawOpening | None:
     """One opening in place of two that lie next to each other; None where they do not."""
     if a.direction is None or b.direction is None or not same_kind(a, b):
         return None
-    along = Wall(a.centre, _onward(a.centre, a.direction), "", 1.0, 1.0)
+    along = Wall(a.centre, _step_along(a.centre, a.direction), "", 1.0, 1.0)
     s, across = along_across(along, b.centre)
     reach_m = (a.width_m + b.width_m) / 2
     if (
@@ -61,6 +61,6 @@ def _joined(a: RawOpening, b: RawOpening) -> RawOpening | None:
     return replace(a, centre=along.point_at((low + high) / 2), width_m=high - low)
 
 
-def _onward(point: Point, along: Point) -> Point:
+def _step_along(point: Point, along: Point) -> Point:
     length = hypot(*along)
     return (point[0] + along[0] / length, point[1] + along[1] / length)

@@ -1,4 +1,4 @@
-"""Gaps of walls at their doors and windows, filled so that the wall goes on behind the opening."""
+"""Gaps in walls at doors and windows, filled so that the wall continues behind the opening."""
 
 from __future__ import annotations
 
@@ -15,28 +15,27 @@ from shapely.geometry.base import BaseGeometry
 from floorplans.importers.draft import RawOpening
 
 _BESIDE_M = 1.0
-"""How far beside an opening's middle the gap's sides are looked for [m]."""
+"""How far beside an opening's middle the sides of a gap are searched [m]."""
 _FRAME_M = 0.3
-"""How far a gap may go on beyond an opening at each side [m]."""
+"""How far a gap may extend beyond an opening on each side [m]."""
 _REBATE_M = 0.06
 """How far the faces of a gap may step back [m]."""
 _STEP_M = 0.02
 _OVER_M = 0.01
-_MIN_SHARE = 0.5
+_MIN_FRACTION = 0.5
 _MIN_COMMON = 0.7
 
 
 def fill_gaps(area: BaseGeometry, openings: Sequence[RawOpening]) -> tuple[Polygon, ...]:
-    """Fill the gaps in an area of wall in which openings stand.
+    """Fill the gaps of a wall area in which openings lie.
 
-    A gap lies between two faces of wall that an opening reaches from one to the other; it is filled
-    as deep as the faces have in common. An opening of unknown direction, or that stands in a wall,
-    has no gap.
+    A gap lies between two wall faces that an opening connects; it is filled to the depth that the
+    faces have in common. An opening of unknown direction, or inside a wall, has no gap.
 
     Parameters
     ----------
     area : shapely geometry
-        Of the walls, from above [m].
+        Of the walls in the plan view [m].
     openings : sequence of RawOpening
 
     Returns
@@ -71,15 +70,15 @@ def _filling(
 
 
 def _gap(local: BaseGeometry, width_m: float) -> Polygon | None:
-    """Gap around the origin, along x, in an area of wall; None where there is none."""
+    """Gap around the origin, along x, in a wall area; None if there is none."""
     rows = np.arange(-_BESIDE_M + _STEP_M / 2, _BESIDE_M, _STEP_M)
     sides = np.array([_sides(local, float(row), width_m) for row in rows])
-    bridged = np.array(np.isfinite(sides).all(axis=1))
-    run = _run_nearest_middle(bridged)
+    spanned = np.array(np.isfinite(sides).all(axis=1))
+    run = _run_nearest_middle(spanned)
     if run is None or run == (0, len(rows)):
         return None
     middle = min(max(len(rows) // 2, run[0]), run[1] - 1)
-    run = _run_nearest_middle(bridged & _level(sides, middle)) or run
+    run = _run_nearest_middle(spanned & _level(sides, middle)) or run
     left, right = np.median(sides[run[0] : run[1]], axis=0)
     low, high = rows[run[0]] - _STEP_M / 2, rows[run[1] - 1] + _STEP_M / 2
     low, high = _exact(local, (float(left), float(right)), (float(low), float(high)))
@@ -87,12 +86,12 @@ def _gap(local: BaseGeometry, width_m: float) -> Polygon | None:
 
 
 def _level(sides: NDArray[np.float64], middle: int) -> NDArray[np.bool_]:
-    """Rows whose sides are those of the middle one: others lie between other walls."""
+    """Rows whose sides match the middle row: others lie between other walls."""
     return np.array((np.abs(sides - sides[middle]) <= _REBATE_M).all(axis=1))
 
 
 def _sides(local: BaseGeometry, row: float, width_m: float) -> tuple[float, float]:
-    """Where wall begins to the left and the right of x = 0 in a row; nan where not near enough."""
+    """Where wall begins left and right of x = 0 in a row; nan if not near enough."""
     far_m = width_m / 2 + _FRAME_M
     line = shapely.linestrings([[-far_m - _STEP_M, row], [far_m + _STEP_M, row]])
     hits = shapely.get_parts(shapely.intersection(line, local))
@@ -100,13 +99,13 @@ def _sides(local: BaseGeometry, row: float, width_m: float) -> tuple[float, floa
     left = max((high for _, high in spans if high <= 0), default=np.nan)
     right = min((low for low, _ in spans if low >= 0), default=np.nan)
     blocked = any(low < 0 < high for low, high in spans)
-    if blocked or not right - left >= _MIN_SHARE * width_m:
+    if blocked or not right - left >= _MIN_FRACTION * width_m:
         return (np.nan, np.nan)
     return (left, right)
 
 
 def _run_nearest_middle(flags: NDArray[np.bool_]) -> tuple[int, int] | None:
-    """First and last + 1 of the run of true flags that is nearest to the middle."""
+    """Bounds [first, last + 1) of the run of true flags nearest to the middle."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     runs = edges.reshape(-1, 2).tolist()
     if not runs:
@@ -119,10 +118,10 @@ def _run_nearest_middle(flags: NDArray[np.bool_]) -> tuple[int, int] | None:
 def _exact(
     local: BaseGeometry, sides: tuple[float, float], rows: tuple[float, float]
 ) -> tuple[float, float]:
-    """Depth of a gap: that of its faces' own edges, where the rows found them within a step.
+    """Depth of a gap: from the edges of its faces, where the rows found them within a step.
 
-    Faces that are set off from each other have less in common than each is deep; the gap is then
-    as deep as the thinner of them, about the middle of what they share, if that much is free.
+    Faces offset from each other overlap by less than their depth; the gap is then as deep as the
+    thinner of them, centred on the overlap, if that much is free.
     """
     thinnest_m = np.inf
     lows, highs = [], []

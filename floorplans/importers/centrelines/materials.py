@@ -1,4 +1,4 @@
-"""Walls cut where their material changes."""
+"""Walls split where their material changes."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from shapely.geometry.base import BaseGeometry
 from floorplans.importers.draft import RawOpening, RawWall
 
 MIN_RUN_M = 2.0
-"""A shorter stretch of another material belongs to its neighbour [m]."""
+"""A shorter section of another material belongs to its neighbour [m]."""
 _FRAME_M = 0.1
 _DEPTH_M = 0.6
 
 
 def by_material(wall: RawWall, areas: Mapping[str | None, BaseGeometry]) -> Iterator[RawWall]:
-    """Cut a wall into stretches of one material each.
+    """Split a wall into sections of one material each.
 
     Parameters
     ----------
     wall : RawWall
     areas : mapping of str or None to shapely geometry
-        Area of each material [m]; where there is none, as behind a door, the neighbour's goes on.
+        Area of each material [m]; where there is none, as behind a door, the neighbour's continues.
 
     Yields
     ------
@@ -45,14 +45,14 @@ def by_material(wall: RawWall, areas: Mapping[str | None, BaseGeometry]) -> Iter
 def without_openings(
     areas: Mapping[str | None, BaseGeometry], openings: Sequence[RawOpening]
 ) -> dict[str | None, BaseGeometry]:
-    """Areas of materials without what lies in doors and windows, where sills are drawn.
+    """Areas of materials without doors and windows, where sills are drawn.
 
     Parameters
     ----------
     areas : mapping of str or None to shapely geometry
         [m].
     openings : sequence of RawOpening
-        Those of unknown direction are passed over.
+        Those of unknown direction are ignored.
     """
     boxes = [
         _around(opening, opening.direction) for opening in openings if opening.direction is not None
@@ -72,7 +72,7 @@ Run = tuple[float, float, str | None]
 
 
 def _runs(line: LineString, areas: Mapping[str | None, BaseGeometry]) -> list[Run]:
-    """From, to and material of each run along a line [m]; at least one, none short."""
+    """Start, end and material of each run along a line [m]; at least one, none short."""
     runs: list[Run] = sorted(
         (
             (low, high, material)
@@ -91,7 +91,7 @@ def _runs(line: LineString, areas: Mapping[str | None, BaseGeometry]) -> list[Ru
 
 
 def _merged(runs: list[Run]) -> list[Run]:
-    """Make one run of neighbours of one material."""
+    """Merge neighbouring runs of one material."""
     merged = runs[:1]
     for low, high, material in runs[1:]:
         if material == merged[-1][2]:

@@ -16,7 +16,7 @@ MIN_THICKNESS_M = 0.02
 _MAX_SINE = np.sin(np.radians(6.0))
 _MIN_OVERLAP_M = 0.05
 _MIN_SINGLE_M = 0.3
-"""Lines without a partner shorter than this are jambs and caps, not walls [m]."""
+"""Unpaired lines shorter than this are jambs and caps, not walls [m]."""
 _CAP_M = 0.03
 
 Segments = NDArray[np.float64]
@@ -24,24 +24,24 @@ Segments = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Strip:
-    """The area of wall between two lines, as long as they face each other [m]."""
+    """The wall area between two lines, where they face each other [m]."""
 
     start: Point
     end: Point
     thickness_m: float
 
-    def area(self, further_m: float = 0.0) -> Polygon:
-        """Rectangle of the strip, made longer at both ends."""
+    def area(self, extension_m: float = 0.0) -> Polygon:
+        """Rectangle of the strip, extended at both ends."""
         a, b = np.array(self.start), np.array(self.end)
         along = (b - a) / np.hypot(*(b - a))
         across = np.array([-along[1], along[0]]) * self.thickness_m / 2
-        a, b = a - along * further_m, b + along * further_m
+        a, b = a - along * extension_m, b + along * extension_m
         return Polygon([a + across, b + across, b - across, a - across])
 
 
 @dataclass
 class _Face:
-    """A line: start, unit direction and length, and which stretches already are a wall's side."""
+    """A line: start, unit direction and length, and the sections already used as a wall's side."""
 
     start: NDArray[np.float64]
     along: NDArray[np.float64]
@@ -49,7 +49,7 @@ class _Face:
     used: list[Interval] = field(default_factory=list[Interval])
 
     def free(self, low: float, high: float) -> Iterator[Interval]:
-        """Stretches of [low, high] that are not used."""
+        """Unused sections of [low, high]."""
         position = low
         for used_low, used_high in [*sorted(self.used), (high, high)]:
             if min(used_low, high) - position > _MIN_OVERLAP_M:
@@ -59,14 +59,14 @@ class _Face:
 
 @dataclass(frozen=True)
 class StripWalls:
-    """What lines mean as walls.
+    """Walls found in lines.
 
     Attributes
     ----------
     area : tuple of shapely.geometry.Polygon
         Strips between pairs of lines, and the corners where strips meet [m].
     singles : (n, 2, 2) float64
-        Lines without a partner, which are walls of unknown thickness [m].
+        Unpaired lines, which are walls of unknown thickness [m].
     """
 
     area: tuple[Polygon, ...]
@@ -74,12 +74,12 @@ class StripWalls:
 
 
 def strips_of_lines(segments: Segments, max_thickness_m: float) -> StripWalls:
-    """Pair lines that face each other, the nearest first; each stretch has one partner.
+    """Pair lines that face each other, the nearest first; each section has one partner.
 
     Parameters
     ----------
     segments : (n, 2, 2) float64
-        Lines of walls, not closed ones around the body of a wall [m].
+        Open lines of walls, not closed outlines of wall bodies [m].
     max_thickness_m : float
         Lines farther apart are not the sides of one wall [m].
 
@@ -125,7 +125,7 @@ def _facing(face: _Face, other: _Face) -> tuple[NDArray[np.float64], NDArray[np.
 
 
 def _apart(face: _Face, other: _Face) -> float:
-    """How far apart two faces are where they face each other; inf where they do not [m]."""
+    """Distance of two faces where they face each other; inf if they do not [m]."""
     s, t = _facing(face, other)
     low, high = max(s[0], 0.0), min(s[1], face.length)
     if high - low < _MIN_OVERLAP_M:
@@ -135,30 +135,30 @@ def _apart(face: _Face, other: _Face) -> float:
 
 
 def _between(face: _Face, other: _Face) -> Iterator[Strip]:
-    """Strips where both faces are free; they are used from then on."""
+    """Strips where both faces are free; marks them as used."""
     s, t = _facing(face, other)
     low, high = max(s[0], 0.0), min(s[1], face.length)
     for begin, end in list(face.free(low, high)):
         back, _ = _facing(other, _part(face, begin, end))
         for back_low, back_high in list(other.free(max(back[0], 0.0), min(back[1], other.length))):
             ahead, _ = _facing(face, _part(other, back_low, back_high))
-            stretch = (max(float(ahead[0]), begin), min(float(ahead[1]), end))
-            if stretch[1] - stretch[0] <= _MIN_OVERLAP_M:
+            section = (max(float(ahead[0]), begin), min(float(ahead[1]), end))
+            if section[1] - section[0] <= _MIN_OVERLAP_M:
                 continue
-            face.used.append(stretch)
+            face.used.append(section)
             other.used.append((back_low, back_high))
-            yield _strip(face, stretch, np.interp(stretch, s, t))
+            yield _strip(face, section, np.interp(section, s, t))
 
 
 def _part(face: _Face, low: float, high: float) -> _Face:
     return _Face(face.start + face.along * low, face.along, high - low)
 
 
-def _strip(face: _Face, stretch: Interval, sides: NDArray[np.float64]) -> Strip:
+def _strip(face: _Face, section: Interval, sides: NDArray[np.float64]) -> Strip:
     across = np.array([-face.along[1], face.along[0]])
     ends = [
         face.start + face.along * s + across * side / 2
-        for s, side in zip(stretch, sides, strict=True)
+        for s, side in zip(section, sides, strict=True)
     ]
     (x0, y0), (x1, y1) = ends
     start, end = (float(x0), float(y0)), (float(x1), float(y1))
@@ -166,7 +166,7 @@ def _strip(face: _Face, stretch: Interval, sides: NDArray[np.float64]) -> Strip:
 
 
 def _corners(strips: list[Strip]) -> Iterator[Polygon]:
-    """What is missing between strips that end at each other: corners, Ts and crossings."""
+    """Areas missing between strips that meet: corners, Ts and crossings."""
     areas = np.array([strip.area() for strip in strips], dtype=np.object_)
     if not areas.size:
         return
@@ -191,7 +191,7 @@ def _bent(a: Strip, b: Strip) -> bool:
 
 
 def _singles(faces: list[_Face], strips: list[Strip]) -> Segments:
-    """Stretches without a partner that are no part of a wall already, (n, 2, 2)."""
+    """Unpaired sections that are not part of a wall already, (n, 2, 2)."""
     walls = [strip.area(strip.thickness_m + _CAP_M).buffer(_CAP_M) for strip in strips]
     tree = shapely.STRtree(walls)
     found: list[list[tuple[float, float]]] = []

@@ -1,4 +1,4 @@
-"""Walls between rooms, for files that draw the rooms and not the walls."""
+"""Walls between rooms, for files that contain rooms but no walls."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from floorplans.importers.centrelines.areas import walls_of_area
 from floorplans.importers.draft import RawWall
 
 WALL_GAP_M = 0.8
-"""Where two rooms are nearer than this, a wall stands between them [m]."""
+"""Rooms nearer to each other than this have a wall between them [m]."""
 
 
 def walls_of_rooms(
@@ -21,15 +21,15 @@ def walls_of_rooms(
 ) -> list[RawWall]:
     """Return a wall around all rooms, and one between each two.
 
-    Rooms that touch have a wall without a known thickness on their common border; a gap between
-    rooms is a wall that fills it.
+    Rooms that touch have a wall of unknown thickness on their common border; a gap between rooms is
+    filled by a wall.
 
     Parameters
     ----------
     rooms : sequence of shapely.geometry.Polygon
         [m].
     is_open : sequence of bool
-        Of each room; there is no wall between two that are.
+        For each room; there is no wall between two open ones.
     tolerance_m : float
         Rooms nearer than this touch [m].
 
@@ -50,7 +50,7 @@ def walls_of_rooms(
 def _borders(
     rooms: Sequence[Polygon], is_open: Sequence[bool], tolerance_m: float
 ) -> list[BaseGeometry]:
-    """Stretches of the edge of one room that run along another."""
+    """Sections of the edge of one room that run along another."""
     tree = shapely.STRtree(list(rooms))
     near = tree.query(list(rooms), predicate="dwithin", distance=tolerance_m).T.tolist()
     pairs = [(i, j) for i, j in near if i < j and not (is_open[i] and is_open[j])]

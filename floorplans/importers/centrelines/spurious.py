@@ -1,4 +1,4 @@
-"""Thin walls that are not there: what the jags of other walls' faces leave."""
+"""Spurious thin walls, caused by steps in the faces of other walls."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from shapely.geometry.base import BaseGeometry
 from floorplans.importers.draft import RawWall
 
 _BESIDE_M = 0.1
-_SHARE = 0.7
+_FRACTION = 0.7
 _RATIO = 3.0
 _THIN_M = 0.06
 
 
-def without_doubles(walls: Sequence[RawWall], area: BaseGeometry) -> list[RawWall]:
-    """Leave out walls that run within, or just beside, the body of one that is much thicker.
+def without_spurious_walls(walls: Sequence[RawWall], area: BaseGeometry) -> list[RawWall]:
+    """Remove walls that run within, or just beside, the body of a much thicker one.
 
     Parameters
     ----------
     walls : sequence of RawWall
         All of known thickness.
     area : shapely geometry
-        Of all walls: a thin wall that is not as thick as its area is left out too [m].
+        Of all walls: a thin wall whose area is not as thick is removed too [m].
 
     Returns
     -------
@@ -41,22 +41,23 @@ def without_doubles(walls: Sequence[RawWall], area: BaseGeometry) -> list[RawWal
         for line, thick in zip(lines, thickness_m, strict=True)
     ]
     thin, thick = shapely.STRtree(bodies).query(np.array(lines), predicate="intersects")
-    doubles = {
+    spurious = {
         i
         for i, j in zip(thin.tolist(), thick.tolist(), strict=True)
         if _RATIO * thickness_m[i] < thickness_m[j]
-        and lines[i].intersection(bodies[j]).length > _SHARE * lines[i].length
+        and lines[i].intersection(bodies[j]).length > _FRACTION * lines[i].length
     }
     return [
         wall
         for i, wall in enumerate(walls)
-        if i not in doubles and (thickness_m[i] >= _THIN_M or _fits(lines[i], thickness_m[i], area))
+        if i not in spurious
+        and (thickness_m[i] >= _THIN_M or _is_filled(lines[i], thickness_m[i], area))
     ]
 
 
-def _fits(line: LineString, thickness_m: float, area: BaseGeometry) -> bool:
-    """Whether there is area all along a wall as wide as its thickness, and not much wider."""
+def _is_filled(line: LineString, thickness_m: float, area: BaseGeometry) -> bool:
+    """Whether the area along a wall is as wide as its thickness, and not much wider."""
     body = line.buffer(thickness_m / 2, cap_style="flat")
     wide = line.buffer(thickness_m, cap_style="flat")
     solid = body.intersection(area).area / body.area
-    return bool(solid > _SHARE and wide.intersection(area).area < _SHARE * wide.area)
+    return bool(solid > _FRACTION and wide.intersection(area).area < _FRACTION * wide.area)

@@ -1,4 +1,4 @@
-"""DXF entities -> chains of points seen from above."""
+"""DXF entities -> chains of points in the plan view."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ if TYPE_CHECKING:
     from ezdxf.math import Matrix44
 
 CHORD_STEPS = (90.0, 45.0, 22.5, 11.25, 5.625, 2.8125)
-"""Angles of chords [degrees]: concentric arcs are cut at the same angles."""
+"""Angles of chords [degrees]: concentric arcs are divided at the same angles."""
 
 _MIN_SWEEP_DEG, _MAX_SWEEP_DEG = 30.0, 120.0
 _MIN_RATIO = 0.7
-"""Ellipses down to this ratio of their axes can be the swing of a door in a stretched block."""
+"""Ellipses down to this ratio of axes can be the swing of a door in a scaled block."""
 _SAME = 1e-6
-"""A chain whose ends are nearer than this share of its length is closed."""
+"""A chain whose ends are nearer than this fraction of its length is closed."""
 _FAR = 1e12
-"""No drawing reaches as far, in any unit."""
+"""Larger coordinates are invalid in any unit."""
 
 
 @dataclass(frozen=True)
 class Swing:
-    """A circular arc as a door's leaf draws it: hinge, and the two ends of the arc."""
+    """The circular arc of a door's leaf: hinge, and the two ends of the arc."""
 
     hinge: Point
     ends: tuple[Point, Point]
@@ -49,9 +49,9 @@ class Curve:
         The first is not repeated at the end of a closed chain.
     closed : bool
     filled : bool
-        Whether the drawing fills it, as a hatch or a solid does.
+        Whether it is filled, as by a hatch or a solid.
     swing : Swing or None
-        For an arc that can be a door's.
+        For an arc that may be a door's.
     """
 
     points: tuple[Point, ...]
@@ -61,18 +61,18 @@ class Curve:
 
 
 def curves_of(entity: DXFGraphic, tolerance: float) -> list[Curve]:
-    """Chains of points of an entity; none for what is no curve or not finite.
+    """Chains of points of an entity; none if it is no curve or not finite.
 
     Parameters
     ----------
     entity : DXFGraphic
     tolerance : float
-        Chords leave a curve by at most this, in the drawing's unit.
+        Largest deviation of chords from a curve, in the drawing's unit.
     """
     try:
         curves = list(_READERS[entity.dxftype()](entity, tolerance))
     except (ArithmeticError, AttributeError, IndexError, TypeError, ValueError):
-        return []  # a damaged entity; the layer's count still shows it
+        return []  # a damaged entity; it still counts as an object of its layer
     return [curve for curve in curves if len(curve.points) > 1 and _finite(curve)]
 
 
@@ -148,7 +148,7 @@ def _spline(spline: Any, tolerance: float) -> Iterator[Curve]:
 
 
 def _polyline(polyline: Any, tolerance: float) -> Iterator[Curve]:
-    """Read a polyline: as one chain, its bulges as chords, and a swing for each bulge."""
+    """Read a polyline as one chain, with bulges as chords and a swing for each bulge."""
     if polyline.dxftype() == "POLYLINE" and not (
         polyline.is_2d_polyline or polyline.is_3d_polyline
     ):
@@ -199,4 +199,4 @@ _READERS: dict[str, Callable[[Any, float], Iterator[Curve]]] = {
     "TRACE": _solid,
 }
 CURVE_TYPES = tuple(_READERS)
-"""Types of entities that are read."""
+"""Entity types that are read."""

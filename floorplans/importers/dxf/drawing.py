@@ -1,8 +1,8 @@
 """DXF file -> plain lines by layer, and the symbols of doors and windows.
 
-Blocks are exploded as deep as they go, except those of doors and windows, which are symbols: their
-lines are kept together. Arcs, circles, bulges, ellipses and splines become chords. Coordinates stay
-in the drawing's unit, seen from above.
+Blocks are exploded recursively, except those of doors and windows, which are symbols: their lines
+are kept together. Arcs, circles, bulges, ellipses and splines become chords. Coordinates stay
+in the drawing's unit, in the plan view.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _FILLED = ("HATCH", "SOLID", "TRACE")
 class Symbol:
     """A door or a window: the curves of its block, and the block's x axis.
 
-    `named` tells whether the block's own name says its kind, or a layer of windows does.
+    `named` is true if the block's own name, or a layer of windows, gives its kind.
     """
 
     kind: Kind
@@ -50,15 +50,15 @@ class Symbol:
 
 @dataclass
 class Content:
-    """What a drawing holds.
+    """Contents of a drawing.
 
     Attributes
     ----------
     curves : mapping of str to list of Curve
-        By layer; only of layers that matter.
+        By layer; only of relevant layers.
     symbols : list of Symbol
     n_objects : Counter of str
-        Objects of each layer, blocks exploded.
+        Objects of each layer, after blocks are exploded.
     hidden : set of str
         Layers that are off or frozen.
     """
@@ -70,7 +70,7 @@ class Content:
 
 
 def load_document(path: Path) -> Document:
-    """Load a drawing, refusing what would take minutes.
+    """Load a drawing; reject what would take minutes.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def load_document(path: Path) -> Document:
         When the file is no DXF file, too large, or its blocks explode into too many objects.
     """
     _check_file(path)
-    with _damage_told():
+    with _damage_reported():
         document = _load(path)
         _check_blocks(document)
     return document
@@ -91,15 +91,15 @@ def read_content(document: Document, layers: Mapping[str, str], tolerance: float
     ----------
     document : ezdxf.document.Drawing
     layers : mapping of str to str
-        The user's meanings of layers; see `layer_names.meaning_of`.
+        Meanings that the user gives; see `layer_names.meaning_of`.
     tolerance : float
-        Chords leave a curve by at most this, in the drawing's unit.
+        Largest deviation of chords from a curve, in the drawing's unit.
 
     Returns
     -------
     Content
     """
-    with _damage_told():
+    with _damage_reported():
         hidden = {layer.dxf.name for layer in document.layers if _is_hidden(layer)}
         content = Content(hidden=hidden)
         _Collector(content, layers, tolerance).collect(document.modelspace(), None, 0)
@@ -107,7 +107,7 @@ def read_content(document: Document, layers: Mapping[str, str], tolerance: float
 
 
 def _check_file(path: Path) -> None:
-    """Refuse a file that would take minutes to load."""
+    """Reject a file that would take minutes to load."""
     size = path.stat().st_size
     if size > MAX_BYTES:
         raise PlanError(
@@ -122,8 +122,8 @@ _LESS = "save one storey, with the layers of its walls, doors and windows only"
 
 
 @contextmanager
-def _damage_told() -> Generator[None]:
-    """Turn what the library raises for a damaged file, in many ways, into one error."""
+def _damage_reported() -> Generator[None]:
+    """Turn the many errors of the library for a damaged file into one."""
     from ezdxf.lldxf.const import DXFError
 
     try:
@@ -140,7 +140,7 @@ def _damage_told() -> Generator[None]:
 
 
 def _load(path: Path) -> Document:
-    """Read a document, damaged ones as far as possible."""
+    """Read a document, recovering damaged ones as far as possible."""
     import ezdxf.filemanagement
     from ezdxf import recover
     from ezdxf.lldxf.const import DXFError
@@ -157,7 +157,7 @@ def _is_hidden(layer: Any) -> bool:
 
 
 def _check_blocks(document: Document) -> None:
-    """Refuse blocks that explode into too many objects, before exploding any."""
+    """Reject blocks that explode into too many objects, before exploding any."""
     sizes: dict[str, float] = {}
     total = _exploded(document.modelspace(), document, sizes, 0)
     if total > MAX_ENTITIES:
@@ -170,7 +170,7 @@ def _check_blocks(document: Document) -> None:
 def _exploded(
     entities: Iterable[DXFGraphic], document: Document, sizes: dict[str, float], depth: int
 ) -> float:
-    """Count the objects of a layout or block, with those of the blocks inside."""
+    """Count the objects of a layout or block, with those of nested blocks."""
     total = 0.0
     for entity in entities:
         if entity.dxftype() != "INSERT":
@@ -186,7 +186,7 @@ def _exploded(
 
 
 class _Collector:
-    """Walks through a layout and the blocks in it, and puts what matters into a `Content`."""
+    """Traverses a layout and its blocks, and collects what matters in a `Content`."""
 
     def __init__(self, content: Content, layers: Mapping[str, str], tolerance: float) -> None:
         self._content = content
@@ -196,7 +196,7 @@ class _Collector:
         self._blocks: dict[str, tuple[Curve, ...]] = {}
 
     def collect(self, entities: Iterable[DXFGraphic], within: str | None, depth: int) -> None:
-        """Take in entities; those of a block on layer 0 are on the layer `within`."""
+        """Collect entities; those of a block on layer 0 are on the layer `within`."""
         for entity in entities:
             if not entity.is_supported_dxf_attrib("layer"):
                 continue
@@ -243,7 +243,7 @@ class _Collector:
         return Symbol(kind, named or kind == "window", layer, axis, curves)
 
     def _block(self, insert: Any, depth: int) -> tuple[Curve, ...]:
-        """Lines of an insert's block and of those in it, in the block's own coordinates."""
+        """Lines of an insert's block and its nested blocks, in the block's own coordinates."""
         name = str(insert.dxf.get("name", ""))
         if name not in self._blocks:
             self._blocks[name] = ()
@@ -262,7 +262,7 @@ class _Collector:
 
 
 def _singles(insert: Any) -> Iterator[Any]:
-    """Inserts of a grid of blocks, one at a time."""
+    """Single inserts of an array of blocks."""
     if insert.mcount > 1:
         yield from insert.multi_insert()
     else:

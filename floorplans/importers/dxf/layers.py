@@ -1,4 +1,4 @@
-"""Which layers of a drawing are walls, doors and windows, and what became of each."""
+"""Which layers of a drawing hold walls, doors and windows, and what became of each."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from floorplans.importers.layer_names import Kind, Meaning, meaning_of
 
 @dataclass(frozen=True)
 class Layers:
-    """Meaning of each layer, how many objects it holds, and why, where it is not its name."""
+    """Meaning of each layer, its objects, and the reason where it is not the name."""
 
     meanings: Mapping[str, Meaning]
     content: Content
     why: Mapping[str, str]
 
     def of(self, kind: Kind) -> tuple[str, ...]:
-        """Names of the layers of a kind that hold lines, in order."""
+        """Names of the layers of a kind that contain lines, in order."""
         return tuple(
             name
             for name, meaning in self.meanings.items()
@@ -55,20 +55,20 @@ class Layers:
 
 
 def layers_of(content: Content, given: Mapping[str, str]) -> Layers:
-    """Tell what each layer is.
+    """Find the meaning of each layer.
 
-    Where no layer is known to hold walls, the layers nothing is known of are taken for walls.
+    If no layer is known to hold walls, the layers of unknown meaning are taken for walls.
 
     Parameters
     ----------
     content : Content
     given : mapping of str to str
-        The user's meanings of layers.
+        Meanings that the user gives.
 
     Raises
     ------
     PlanError
-        When there are no lines that could be walls.
+        When no lines could be walls.
     """
     why: dict[str, str] = {}
     meanings: dict[str, Meaning] = {}

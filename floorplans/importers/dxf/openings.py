@@ -18,26 +18,26 @@ from floorplans.walls import OpeningKind
 from floorplans.walls import Point as Point2
 
 _LEAF_M = (0.35, 2.0)
-_LEAF_SHARE = 0.4
-"""Arcs smaller than this share of a symbol's largest are handles and stops."""
+_LEAF_FRACTION = 0.4
+"""Arcs smaller than this fraction of a symbol's largest are handles and stops."""
 _BESIDE_M = 0.1
-"""A door's hinge is drawn as far beside its wall [m]."""
-_ONWARD_M = 1.0
-"""How far a wall is looked for at both sides of a door [m]."""
-_DRAWN_SHARE = 0.8
+"""Largest distance of a door's hinge from its wall [m]."""
+_AHEAD_M = 1.0
+"""How far walls are searched on both sides of a door [m]."""
+_DRAWN_FRACTION = 0.8
 _CLUSTER_M = 0.1
 _MAX_DEPTH_M = 1.0
 _SHUT_M = 1.5
-"""Half of the widest gap over which outer walls are taken to go on [m]."""
+"""Half of the widest gap across which outer walls are assumed to continue [m]."""
 _MIN_WIDTH_M = 0.3
 
 
 def openings_of_symbol(symbol: Symbol, walls: BaseGeometry) -> list[RawOpening]:
     """Openings of a door's or window's block, in metres.
 
-    A door is as wide as the radius of its swing, and lies between the hinge and that end of the
-    arc towards which its wall goes on. Without a swing, the opening is the longer side of the
-    block's box, along the block's own axes.
+    A door is as wide as the radius of its swing, and lies between the hinge and the end of the arc
+    towards which its wall continues. Without a swing, the opening is the longer side of the block's
+    box along the block's own axes.
 
     Parameters
     ----------
@@ -48,8 +48,8 @@ def openings_of_symbol(symbol: Symbol, walls: BaseGeometry) -> list[RawOpening]:
     Returns
     -------
     list of RawOpening
-        Empty where the symbol is too small to be an opening; a "passage" where neither name nor
-        swing tells whether it is a door or a window: see `as_windows_outside`.
+        Empty if the symbol is too small to be an opening; a "passage" if neither name nor swing
+        distinguishes door and window: see `as_windows_outside`.
     """
     kind: OpeningKind = "window" if symbol.kind == "window" else "door"
     swings = door_swings(symbol.curves) if kind == "door" else []
@@ -67,11 +67,11 @@ def door_swings(curves: Sequence[Curve]) -> list[Swing]:
     low_m, high_m = _LEAF_M
     swings = [c.swing for c in curves if c.swing is not None and low_m <= c.swing.radius <= high_m]
     largest_m = max((swing.radius for swing in swings), default=0.0)
-    return [swing for swing in swings if swing.radius >= _LEAF_SHARE * largest_m]
+    return [swing for swing in swings if swing.radius >= _LEAF_FRACTION * largest_m]
 
 
 def opening_of_swing(swing: Swing, curves: Sequence[Curve], walls: BaseGeometry) -> RawOpening:
-    """Opening that a leaf closes when it is shut: the way on which the wall goes on.
+    """Opening that a leaf closes: towards the end of its swing where the wall continues.
 
     Parameters
     ----------
@@ -84,19 +84,19 @@ def opening_of_swing(swing: Swing, curves: Sequence[Curve], walls: BaseGeometry)
     lines = [LineString(curve.points) for curve in curves if curve.swing is None]
     leaves = shapely.union_all([line.buffer(_BESIDE_M) for line in lines])
     x, y = swing.hinge
-    near = walls.intersection(Point(x, y).buffer(swing.radius + 2 * _ONWARD_M)).buffer(_BESIDE_M)
+    near = walls.intersection(Point(x, y).buffer(swing.radius + 2 * _AHEAD_M)).buffer(_BESIDE_M)
 
-    def wall_onward_m(end: Point2) -> float:
-        """Length of wall behind the hinge and beyond the end, less where the leaf is drawn."""
+    def wall_ahead_m(end: Point2) -> float:
+        """Length of wall behind the hinge and beyond the end, reduced where the leaf is drawn."""
         ux, uy = (end[0] - x) / swing.radius, (end[1] - y) / swing.radius
-        behind = LineString([swing.hinge, (x - ux * _ONWARD_M, y - uy * _ONWARD_M)])
-        beyond = LineString([end, (end[0] + ux * _ONWARD_M, end[1] + uy * _ONWARD_M)])
+        behind = LineString([swing.hinge, (x - ux * _AHEAD_M, y - uy * _AHEAD_M)])
+        beyond = LineString([end, (end[0] + ux * _AHEAD_M, end[1] + uy * _AHEAD_M)])
         leaf = LineString([swing.hinge, end])
-        drawn = leaf.intersection(leaves).length > _DRAWN_SHARE * leaf.length
+        drawn = leaf.intersection(leaves).length > _DRAWN_FRACTION * leaf.length
         wall_m = behind.intersection(near).length + beyond.intersection(near).length
-        return wall_m - (_ONWARD_M / 2 if drawn else 0.0)
+        return wall_m - (_AHEAD_M / 2 if drawn else 0.0)
 
-    return RawOpening.between(swing.hinge, max(swing.ends, key=wall_onward_m), "door")
+    return RawOpening.between(swing.hinge, max(swing.ends, key=wall_ahead_m), "door")
 
 
 def _opening_of_box(points: Sequence[Point2], axis: Point2, kind: OpeningKind) -> RawOpening | None:
@@ -119,12 +119,12 @@ def _opening_of_box(points: Sequence[Point2], axis: Point2, kind: OpeningKind) -
 
 
 def as_windows_outside(openings: Sequence[RawOpening], area: BaseGeometry) -> list[RawOpening]:
-    """Take an opening nothing is known of for a window in the outer walls, for a door inside.
+    """Make an opening of unknown kind a window in the outer walls, a door inside.
 
     Parameters
     ----------
     openings : sequence of RawOpening
-        Those not known are of kind "passage".
+        Those of unknown kind are a "passage".
     area : shapely geometry
         Of the walls [m].
     """
@@ -141,32 +141,32 @@ def as_windows_outside(openings: Sequence[RawOpening], area: BaseGeometry) -> li
 
 @dataclass(frozen=True)
 class LooseLines:
-    """Lines on the layer of windows or doors that lie together: an opening, if they are one."""
+    """A cluster of lines of windows or doors, and the opening it forms, if any."""
 
     opening: RawOpening | None
     lines: tuple[LineString, ...]
 
 
 def loose_lines(curves: Sequence[Curve], kind: OpeningKind) -> Iterator[LooseLines]:
-    """Gather lines that touch or nearly touch, and the opening each heap would be.
+    """Cluster lines that touch or nearly touch, with the opening each cluster would be.
 
     Parameters
     ----------
     curves : sequence of Curve
-        Of layers of windows or doors, in metres; arcs of doors left out.
+        Of layers of windows or doors, in metres, without arcs of doors.
     kind : {"door", "window"}
     """
     lines = [LineString([*c.points, *c.points[: c.closed]]) for c in curves]
     if not lines:
         return
-    heaps = shapely.get_parts(shapely.union_all([line.buffer(_CLUSTER_M) for line in lines]))
+    clusters = shapely.get_parts(shapely.union_all([line.buffer(_CLUSTER_M) for line in lines]))
     tree = shapely.STRtree(lines)
-    for heap in heaps:
-        members = tuple(lines[i] for i in tree.query(heap, predicate="intersects").tolist())
-        yield LooseLines(_opening_of_heap(members, kind), members)
+    for cluster in clusters:
+        members = tuple(lines[i] for i in tree.query(cluster, predicate="intersects").tolist())
+        yield LooseLines(_opening_of_cluster(members, kind), members)
 
 
-def _opening_of_heap(lines: Sequence[LineString], kind: OpeningKind) -> RawOpening | None:
+def _opening_of_cluster(lines: Sequence[LineString], kind: OpeningKind) -> RawOpening | None:
     envelope = shapely.oriented_envelope(shapely.multilinestrings(list(lines)))
     if isinstance(envelope, Polygon):
         a, b, c = shapely.get_coordinates(envelope)[:3]

@@ -1,9 +1,9 @@
 """DXF drawings -> drafts of plans.
 
-Layers tell what lines are, by their names or by the user's word. Closed outlines of wall bodies,
-fills, and the strips between two parallel lines make up the area of wall; gaps in it at doors and
-windows are filled; its centre lines, with the measured thickness, are the walls. A line without a
-partner is a wall of unknown thickness. Doors and windows come from blocks, from the swings of door
+The layer of a line, by its name or the user's mapping, determines what it is. Closed outlines of
+wall bodies, fills, and the strips between parallel lines make up the wall area; gaps in it at doors
+and windows are filled; its centre lines, with the measured thickness, are the walls. An unpaired
+line is a wall of unknown thickness. Doors and windows come from blocks, from the swings of door
 leaves, and from lines that lie in a gap; other lines of windows are walls of glass.
 """
 
@@ -21,13 +21,13 @@ from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
-from floorplans.importers.centrelines.align import along_walls, squared
+from floorplans.importers.centrelines.align import aligned_to_main_directions, along_walls
 from floorplans.importers.centrelines.areas import MAX_THICKNESS_M, walls_of_area
 from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
 from floorplans.importers.centrelines.materials import by_material, without_openings
 from floorplans.importers.centrelines.parallel_lines import strips_of_lines
-from floorplans.importers.centrelines.spurious import without_doubles
+from floorplans.importers.centrelines.spurious import without_spurious_walls
 from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
 from floorplans.importers.dxf.curves import Curve, Swing
@@ -46,17 +46,17 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
 CHORD_M = 0.02
-"""Chords leave an arc by at most this [m]."""
+"""Largest deviation of chords from an arc [m]."""
 MAX_LINES = 20_000
-"""Lines on the layers of walls; more are no single storey."""
+"""Most lines on the layers of walls of a storey."""
 _PAIR_M = 0.6
-"""Two lines farther apart than this are not the sides of one wall [m]."""
+"""Largest distance between the two lines of a wall [m]."""
 _CLOSE_M = 0.02
 _IN_WALL_M = 0.05
 _AT_FACE_M = 0.12
 _CROSSING_M = 1.0
 _MIN_SINGLE_M = 0.3
-_STRAY_PERCENT = (0.5, 99.5)
+_INLIER_PERCENTILES = (0.5, 99.5)
 
 _INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 14: "dm"}
 
@@ -65,14 +65,14 @@ Material = str | None
 
 @dataclass(frozen=True)
 class _Bodies:
-    """What the layers of walls hold.
+    """Contents of the layers of walls.
 
     Attributes
     ----------
     area : mapping of Material to shapely geometry
-        Area of wall of each material [m].
+        Wall area of each material [m].
     singles : tuple of (LineString, Material)
-        Lines without a partner [m].
+        Unpaired lines [m].
     """
 
     area: Mapping[Material, BaseGeometry]
@@ -86,7 +86,7 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
     ----------
     path : Path
     options : ImportOptions
-        `unit`, `layers` and `tolerance_m` (of chords) are used here.
+        `unit`, `layers` and `tolerance_m` (of chords) are used.
 
     Returns
     -------
@@ -95,14 +95,14 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
     Raises
     ------
     PlanError
-        When the file is damaged or too large, holds no walls, or its unit cannot be told.
+        When the file is damaged or too large, holds no walls, or its unit is unknown.
     """
     document = load_document(path)
-    unit, told = _unit(document, options)
+    unit, stated_by = _unit(document, options)
     tolerance = (options.tolerance_m or CHORD_M) / UNITS[unit]
     content = read_content(document, options.layers, tolerance)
     layers = layers_of(content, options.layers)
-    check_size(_size(content, layers), unit, told)
+    check_size(_size(content, layers), unit, stated_by)
     metric = _in_metres(content, UNITS[unit])
     walls, openings = _building(metric, layers)
     return Draft(
@@ -110,12 +110,12 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
         walls=tuple(walls),
         openings=tuple(openings),
         layers=layers.uses(),
-        notes=(f"unit {unit}, as {told}",),
+        notes=(f"unit {unit}, as {stated_by}",),
     )
 
 
 def _unit(document: Document, options: ImportOptions) -> tuple[str, str]:
-    """Unit of the drawing, and who says so."""
+    """Unit of the drawing, and who states it."""
     if options.unit is not None:
         unit_length(options.unit)
         return options.unit, "you say"
@@ -132,10 +132,10 @@ def _unit(document: Document, options: ImportOptions) -> tuple[str, str]:
 
 
 def _size(content: Content, layers: Layers) -> tuple[float, float]:
-    """Width and depth of the walls, in the drawing's unit, but for points that lie astray."""
+    """Width and depth of the walls in the drawing's unit, without outliers."""
     curves = [curve for layer in layers.of("wall") for curve in content.curves[layer]]
     points = np.array([point for curve in curves for point in curve.points])
-    width, depth = np.diff(np.percentile(points, _STRAY_PERCENT, axis=0), axis=0)[0]
+    width, depth = np.diff(np.percentile(points, _INLIER_PERCENTILES, axis=0), axis=0)[0]
     return float(width), float(depth)
 
 
@@ -176,7 +176,7 @@ def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[Raw
     openings = as_windows_outside([*openings, *loose], area)
     solid = without_openings(bodies.area, openings)
     walls = walls_of_area(area, _CLOSE_M, shapely.union_all(filled)) if not area.is_empty else []
-    walls = squared(without_doubles(walls, area))
+    walls = aligned_to_main_directions(without_spurious_walls(walls, area))
     return [
         *(piece for wall in walls for piece in by_material(wall, solid)),
         *_single_walls(bodies, area),
@@ -198,17 +198,17 @@ def _panes(content: Content, layers: Layers) -> list[LineString]:
 
 
 def _bodies(content: Content, layers: Layers) -> _Bodies:
-    """Area of wall and single lines of each material."""
+    """Wall area and single lines of each material."""
     curves: dict[Material, list[Curve]] = {}
     for layer in layers.of("wall"):
         curves.setdefault(layers.material(layer), []).extend(content.curves[layer])
     _check_number(curves)
-    sorted_out = {material: _thin_bodies(chains) for material, chains in curves.items()}
-    faces = shapely.union_all([body for closed, _ in sorted_out.values() for body in closed])
+    by_material_ = {material: _thin_bodies(chains) for material, chains in curves.items()}
+    faces = shapely.union_all([body for closed, _ in by_material_.values() for body in closed])
     beside = faces.buffer(_AT_FACE_M)
     area: dict[Material, BaseGeometry] = {}
     singles: list[tuple[LineString, Material]] = []
-    for material, (closed, segments) in sorted_out.items():
+    for material, (closed, segments) in by_material_.items():
         walls = strips_of_lines(segments, _PAIR_M)
         strips = [s for s in walls.area if s.difference(beside).area > s.area / 2]
         area[material] = shapely.union_all([*closed, *strips])
@@ -217,7 +217,7 @@ def _bodies(content: Content, layers: Layers) -> _Bodies:
 
 
 def _check_number(curves: Mapping[Material, Sequence[Curve]]) -> None:
-    """Refuse more lines than the walls of a storey have, before the slow work."""
+    """Reject more lines than the walls of a storey have, before the slow work."""
     n_lines = sum(len(chain.points) for chains in curves.values() for chain in chains)
     if n_lines > MAX_LINES:
         raise PlanError(
@@ -228,7 +228,7 @@ def _check_number(curves: Mapping[Material, Sequence[Curve]]) -> None:
 
 
 def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:
-    """Walls on lines without a partner; what lies beside a face of a wall is left out."""
+    """Walls on unpaired lines, except beside a wall's face."""
     wide = area.buffer(_AT_FACE_M)
     for line, material in bodies.singles:
         for part in shapely.get_parts(line.difference(wide)):
@@ -238,7 +238,7 @@ def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:
 
 
 def _thin_bodies(chains: Sequence[Curve]) -> tuple[list[Polygon], NDArray[np.float64]]:
-    """Closed chains around what is thin enough to be a wall, and the segments of the others."""
+    """Closed chains thin enough to be walls, and the segments of the others."""
     area: list[Polygon] = []
     segments: list[NDArray[np.float64]] = []
     for chain in chains:
@@ -252,7 +252,7 @@ def _thin_bodies(chains: Sequence[Curve]) -> tuple[list[Polygon], NDArray[np.flo
 
 
 def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> list[RawOpening]:
-    """Openings of door leaves that are drawn as they are, without a block."""
+    """Openings of door leaves drawn without a block."""
     curves = [curve for layer in layers.of("door") for curve in content.curves[layer]]
     return [opening_of_swing(swing, curves, ground) for swing in door_swings(curves)]
 
@@ -260,37 +260,37 @@ def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> l
 def _loose_openings(
     content: Content, layers: Layers, area: BaseGeometry
 ) -> tuple[list[RawOpening], list[LineString]]:
-    """Lines of windows and doors that lie in a wall or in a gap of one, and those that do not."""
+    """Openings of window and door lines that lie in a wall or its gap, and the other lines."""
     openings: list[RawOpening] = []
     glass: list[LineString] = []
     for layer in (*layers.of("window"), *layers.of("door")):
         curves = content.curves[layer]
         leaves = [curve.swing for curve in curves if curve.swing is not None]
         straight = [curve for curve in curves if curve.swing is None]
-        for heap in loose_lines(straight, "window"):
-            if _has_leaf(heap.lines, leaves):
+        for cluster in loose_lines(straight, "window"):
+            if _has_leaf(cluster.lines, leaves):
                 continue
-            if heap.opening is not None and _stands(heap.opening, area):
-                openings.append(heap.opening)
+            if cluster.opening is not None and _is_in_wall(cluster.opening, area):
+                openings.append(cluster.opening)
             else:
-                glass += heap.lines
+                glass += cluster.lines
     return openings, glass
 
 
 def _has_leaf(lines: Sequence[LineString], leaves: Sequence[Swing]) -> bool:
     """Whether lines belong to a door's leaf."""
-    heap = shapely.union_all(list(lines))
-    return any(Point(p).distance(heap) < _IN_WALL_M for s in leaves for p in (s.hinge, *s.ends))
+    joined = shapely.union_all(list(lines))
+    return any(Point(p).distance(joined) < _IN_WALL_M for s in leaves for p in (s.hinge, *s.ends))
 
 
-def _stands(opening: RawOpening, area: BaseGeometry) -> bool:
+def _is_in_wall(opening: RawOpening, area: BaseGeometry) -> bool:
     """Whether an opening lies in a wall, or in a gap of one."""
     in_wall = Point(opening.centre).distance(area) < _IN_WALL_M
     return in_wall or bool(fill_gaps(area, [opening]))
 
 
 def _outside(line: LineString, area: BaseGeometry) -> BaseGeometry:
-    """Line without the stretches along which it runs inside an area, short crossings aside."""
+    """Line without the sections inside an area, except short crossings."""
     inside = shapely.get_parts(line.intersection(area))
     along = [part for part in inside if part.length > min(_CROSSING_M, 0.9 * line.length)]
     return line.difference(shapely.union_all(along).buffer(_IN_WALL_M / 10))
@@ -299,7 +299,7 @@ def _outside(line: LineString, area: BaseGeometry) -> BaseGeometry:
 def _glass_walls(lines: Sequence[LineString], area: BaseGeometry) -> list[RawWall]:
     """Walls of glass on single lines, and between two lines that face each other.
 
-    What runs in other walls or on their faces is left out; a pane may cross them.
+    Lines inside other walls or on their faces are ignored; a pane may cross walls.
     """
     wide = area.buffer(_IN_WALL_M)
     parts = shapely.get_parts([_outside(line, wide) for line in lines])

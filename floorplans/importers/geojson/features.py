@@ -1,8 +1,8 @@
-"""What a GeoJSON feature is: wall, door, window, room, outline or nothing of ours; and its level.
+"""The kind of a GeoJSON feature (wall, door, window, room, outline ...) and its level.
 
-Files name the kind of a feature in many ways. Known are the feature types of IMDF, the tags of
-OpenStreetMap's simple indoor tagging, and a word for it under one of `KIND_KEYS`, in the languages
-that `layer_names` knows.
+Files name the kind of a feature in many ways. Supported are the feature types of IMDF, the tags of
+OpenStreetMap's simple indoor tagging, and words under one of `KIND_KEYS`, in the languages of
+`layer_names`.
 """
 
 from __future__ import annotations
@@ -46,24 +46,24 @@ WORDS: Mapping[str, Kind] = {
 LEVEL_KEYS = ("level", "level_id", "levelId", "level_name", "floor", "storey", "building_level")
 
 OPEN_UNITS = frozenset({"walkway", "corridor", "hallway", "opentobelow", "lobby", "area"})
-"""Rooms of these categories have no wall where they border on each other."""
+"""Rooms of these categories have no wall where they adjoin each other."""
 
 Json = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
 class FeatureClass:
-    """What a feature is.
+    """Meaning of a feature.
 
     Attributes
     ----------
     kind : Kind or None
-        None where nothing tells.
+        None if unknown.
     label : str
-        What the file calls it, for the report.
+        Its name in the file, for the report.
     material : str or None
     is_open : bool
-        Whether it is a room without walls towards others of its kind.
+        Whether it is a room without walls to others of its kind.
     """
 
     kind: Kind | None
@@ -73,7 +73,7 @@ class FeatureClass:
 
 
 def classify(feature: Json, options: ImportOptions) -> FeatureClass:
-    """Tell what a feature is, by the user's layers first, by what the file says then."""
+    """Find what a feature is, from the user's layers or otherwise from the file."""
     properties = properties_of(feature)
     words = [text for key in KIND_KEYS for text in _texts(properties.get(key))]
     words = [*_texts(feature.get("feature_type")), *words, *_osm_words(properties)]
@@ -93,7 +93,7 @@ def classify(feature: Json, options: ImportOptions) -> FeatureClass:
 
 
 def parse_target(target: str) -> tuple[Kind, str | None]:
-    """Read KIND or KIND:MATERIAL; raise `PlanError` for one that is not known."""
+    """Parse KIND or KIND:MATERIAL; raise `PlanError` if unknown."""
     name, _, material = target.partition(":")
     for kind in KINDS:
         if kind == name:
@@ -106,7 +106,7 @@ def parse_target(target: str) -> tuple[Kind, str | None]:
 
 
 def levels_of(feature: Json) -> frozenset[str]:
-    """Levels a feature lies on, as the file calls them; none where it does not say."""
+    """Names of the levels of a feature; empty if the file states none."""
     properties = properties_of(feature)
     for key in LEVEL_KEYS:
         value = properties.get(key)
@@ -116,7 +116,7 @@ def levels_of(feature: Json) -> frozenset[str]:
 
 
 def number_of(feature: Json, *keys: str) -> float | None:
-    """Return the first number above 0 under one of the keys, which may be text such as 2.5 m."""
+    """Return the first number above 0 under one of the keys, or in text such as 2.5 m."""
     properties = properties_of(feature)
     for key in keys:
         match = re.match(r"\s*(\d+(?:\.\d+)?)\s*m?\s*$", str(properties.get(key)))
@@ -126,7 +126,7 @@ def number_of(feature: Json, *keys: str) -> float | None:
 
 
 def properties_of(feature: Json) -> Json:
-    """Return a feature's properties, empty where there are none."""
+    """Return a feature's properties, empty if there are none."""
     properties = feature.get("properties")
     return cast("Json", properties) if isinstance(properties, dict) else {}
 

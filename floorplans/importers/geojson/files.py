@@ -1,4 +1,4 @@
-"""Features out of a GeoJSON file, or out of the files of an IMDF archive or folder."""
+"""Features from a GeoJSON file, or from the files of an IMDF archive or folder."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from zipfile import BadZipFile, ZipFile, is_zipfile
 from floorplans.errors import PlanError
 
 MAX_BYTES = 64 * 2**20
-"""The longest file, or all files of an archive together, that is read [bytes]."""
+"""Largest size of a file, or of all files of an archive together [bytes]."""
 
 MAX_FEATURES = 100_000
 MAX_FILES = 100
 
 IMDF_FILES = ("level", "unit", "opening", "fixture", "footprint")
-"""Files of an IMDF archive that tell of walls."""
+"""Files of an IMDF archive that contain walls."""
 
 Json = dict[str, Any]
 
@@ -33,9 +33,9 @@ class Collection:
     features : tuple of dict
         As `json` reads them.
     crs : str or None
-        Name of the coordinate reference system, "" for an explicit null, None where none is named.
+        Name of the coordinate reference system, "" for an explicit null, None if absent.
     document : dict
-        The whole of a single file; empty for a venue.
+        The whole document of a single file; empty for a venue.
     """
 
     features: tuple[Json, ...]
@@ -44,7 +44,7 @@ class Collection:
 
 
 def read_collection(path: Path) -> Collection:
-    """Read a GeoJSON file, or an IMDF archive or folder; raise `PlanError` if it is none."""
+    """Read a GeoJSON file, or an IMDF archive or folder; raise `PlanError` if it is neither."""
     if path.is_dir() or is_zipfile(path):
         texts = _folder_texts(path) if path.is_dir() else _archive_texts(path)
         documents = [_document(text, f"{path}/{name}") for name, text in texts]
@@ -115,7 +115,7 @@ def _document(text: bytes, origin: str) -> Json:
 
 
 def _folder_texts(path: Path) -> Iterator[tuple[str, bytes]]:
-    files = [file for file in sorted(path.iterdir()) if _tells_of_walls(file.name)]
+    files = [file for file in sorted(path.iterdir()) if _holds_walls(file.name)]
     _check_found(len(files))
     _check_bytes(sum(file.stat().st_size for file in files), str(path))
     for file in files:
@@ -123,10 +123,10 @@ def _folder_texts(path: Path) -> Iterator[tuple[str, bytes]]:
 
 
 def _archive_texts(path: Path) -> Iterator[tuple[str, bytes]]:
-    """Read the wanted members in memory, never more of one than the archive says it holds."""
+    """Read the wanted members in memory, each up to the size that the archive states."""
     try:
         with ZipFile(path) as archive:
-            members = [info for info in archive.infolist() if _tells_of_walls(info.filename)]
+            members = [info for info in archive.infolist() if _holds_walls(info.filename)]
             _check_found(len(members))
             _check_bytes(sum(info.file_size for info in members), str(path))
             for info in members:
@@ -138,7 +138,7 @@ def _archive_texts(path: Path) -> Iterator[tuple[str, bytes]]:
         raise PlanError(f"the archive cannot be read: {error}", origin=str(path)) from error
 
 
-def _tells_of_walls(name: str) -> bool:
+def _holds_walls(name: str) -> bool:
     stem, _, ending = name.rsplit("/", 1)[-1].lower().rpartition(".")
     return stem in IMDF_FILES and ending in ("geojson", "json")
 

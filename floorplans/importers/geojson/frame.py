@@ -1,4 +1,4 @@
-"""Coordinates of GeoJSON -> metres in a local frame whose place on the Earth is kept."""
+"""GeoJSON coordinates -> metres in a local frame with a known place on the Earth."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from floorplans.georeference import GeoOrigin
 from floorplans.importers.units import check_size, unit_length
 
 MAX_SIZE_M = 3000.0
-"""The largest building [m]."""
+"""Largest extent of a building [m]."""
 
 MAX_POINTS = 1_000_000
 
@@ -25,12 +25,12 @@ Points = NDArray[np.float64]
 
 
 def geometry_of(feature: Mapping[str, Any], index: int) -> BaseGeometry:
-    """Return a feature's geometry in the file's coordinates, empty where it has none.
+    """Return a feature's geometry in the file's coordinates, empty if it has none.
 
     Raises
     ------
     PlanError
-        When it is no geometry of GeoJSON, or a coordinate is missing or not finite.
+        When it is not a GeoJSON geometry, or a coordinate is missing or not finite.
     """
     place = ("features", index, "geometry")
     geometry = feature.get("geometry")
@@ -51,22 +51,22 @@ def geometry_of(feature: Mapping[str, Any], index: int) -> BaseGeometry:
 def to_metres(
     geometries: Sequence[BaseGeometry], crs: str | None, unit: str | None
 ) -> tuple[list[BaseGeometry], GeoOrigin | None]:
-    """Bring geometries into a local frame in metres.
+    """Transform geometries to a local frame in metres.
 
     Parameters
     ----------
     geometries : sequence of shapely geometries
         In the file's coordinates.
     crs : str or None
-        Name of their reference system, "" for none on the Earth, None where the file does not say:
-        then they are degrees, or metres where they cannot be.
+        Name of their reference system, "" for none on the Earth, None if the file names none: then
+        they are degrees, or metres if they cannot be degrees.
     unit : str or None
-        One of `units.UNITS`, for coordinates that are lengths in a plane; it goes before `crs`.
+        One of `units.UNITS`, for coordinates that are lengths in a plane; overrides `crs`.
 
     Returns
     -------
     (list of shapely geometry, GeoOrigin or None)
-        In metres, and the place of (0, 0); None where the coordinates were lengths already.
+        In metres, and the place of (0, 0); None if the coordinates were lengths already.
     """
     n_points = sum(shapely.get_num_coordinates(geometry) for geometry in geometries)
     if n_points == 0:
@@ -110,7 +110,7 @@ def _check_degrees(degrees: Sequence[BaseGeometry]) -> None:
 
 
 def _degrees(geometries: Sequence[BaseGeometry], crs: str) -> Sequence[BaseGeometry]:
-    """Turn coordinates of a named reference system into longitude and latitude."""
+    """Convert coordinates of a named reference system to longitude and latitude."""
     from pyproj import Transformer
     from pyproj.exceptions import ProjError
 
@@ -118,13 +118,13 @@ def _degrees(geometries: Sequence[BaseGeometry], crs: str) -> Sequence[BaseGeome
         to_wgs = Transformer.from_crs(crs, "OGC:CRS84", always_xy=True)
     except ProjError as error:
         raise PlanError(f"unknown reference system; {error}", ("crs",), crs) from error
-    turned = [
+    converted = [
         shapely.transform(g, lambda p: np.column_stack(to_wgs.transform(p[:, 0], p[:, 1])))
         for g in geometries
     ]
-    if not all(np.isfinite(shapely.get_coordinates(geometry)).all() for geometry in turned):
+    if not all(np.isfinite(shapely.get_coordinates(geometry)).all() for geometry in converted):
         raise PlanError("coordinates lie outside this reference system", ("crs",), crs)
-    return turned
+    return converted
 
 
 def _size(geometries: Sequence[BaseGeometry]) -> Points:

@@ -1,4 +1,4 @@
-"""One level out of the levels of a venue."""
+"""One of the levels of a venue."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ Json = Mapping[str, Any]
 
 
 def on_level(features: Sequence[Json], level: str | None) -> list[bool]:
-    """Tell which features lie on a level.
+    """Find the features on a level.
 
     Parameters
     ----------
     features : sequence of dict
         Those of a building; level features of IMDF among them name the levels.
     level : str or None
-        Name, short name, ordinal or id of a level; it may be None where there is but one.
+        Name, short name, ordinal or id of a level; may be None if there is only one.
 
     Returns
     -------
     list of bool
-        True also for features that tell no level.
+        True also for features without a level.
 
     Raises
     ------
     PlanError
-        When there are several levels and none is chosen, or the one chosen is not there.
+        When there are several levels and none is chosen, or the chosen one does not exist.
     """
     names = _names(features)
     used = sorted({key for feature in features for key in levels_of(feature)}, key=_by_number)
@@ -47,7 +47,7 @@ def on_level(features: Sequence[Json], level: str | None) -> list[bool]:
 
 
 def _names(features: Sequence[Json]) -> defaultdict[str, list[str]]:
-    """Names of each level, in small letters; the key it goes by comes first."""
+    """Names of each level in lower case, its key first."""
     names: defaultdict[str, list[str]] = defaultdict(list)
     for key in {key for feature in features for key in levels_of(feature)}:
         names[key].append(key.casefold())
@@ -64,7 +64,7 @@ def _names(features: Sequence[Json]) -> defaultdict[str, list[str]]:
 
 
 def _texts(value: object) -> list[str]:
-    """Text of a name, which in IMDF is a table of languages."""
+    """Texts of a name, which in IMDF is a table of languages."""
     if isinstance(value, dict):
         return [str(text) for text in cast("Json", value).values()]
     return [] if value is None else [str(value)]

@@ -1,7 +1,7 @@
 """GeoJSON and IMDF -> Draft.
 
-Walls drawn as areas become centre lines with the measured thickness; walls drawn as lines are
-taken as they are; where no wall is drawn as an area, walls also stand around and between the rooms.
+Walls drawn as areas become centre lines with the measured thickness; walls drawn as lines are kept;
+if no wall is drawn as an area, walls are also placed around and between the rooms.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
     Returns
     -------
     Draft or FloorPlan
-        The very plan, from a file that `floorplans.exporters` wrote.
+        The plan itself, from a file that `floorplans.exporters` wrote.
 
     Raises
     ------
     PlanError
-        When the file cannot be read, or has nothing of a building.
+        When the file cannot be read, or describes no building.
     """
     collection = read_collection(path)
     if is_plan(collection.document):
@@ -67,7 +67,7 @@ def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
 def _placed(
     collection: Collection, classes: Sequence[FeatureClass], options: ImportOptions
 ) -> tuple[list[Placed], GeoOrigin | None]:
-    """Return the features of one level that are of use, in metres, and where (0, 0) is."""
+    """Return the usable features of one level, in metres, and where (0, 0) is."""
     used = [i for i, what in enumerate(classes) if what.kind in _USED]
     if not used:
         raise PlanError(_nothing_found(classes), remedy="layers")
@@ -97,7 +97,7 @@ def _nothing_found(classes: Sequence[FeatureClass]) -> str:
 
 
 def _uses(placed: Sequence[Placed], classes: Sequence[FeatureClass]) -> list[LayerUse]:
-    """Tell what became of the features, a line for each name they go by."""
+    """Report what became of the features, one entry per name."""
     total = Counter((what.label, what.kind) for what in classes)
     here = Counter((p.what.label, p.what.kind) for p in placed)
     return [

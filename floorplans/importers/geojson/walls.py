@@ -1,4 +1,4 @@
-"""Walls and openings of features whose kind and place are known."""
+"""Walls and openings of classified features in metres."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from floorplans.importers.geojson.features import FeatureClass, Kind, number_of
 from floorplans.walls import OpeningKind
 
 OPENING_WIDTH_M: Mapping[OpeningKind, float] = {"door": 0.9, "window": 1.2, "passage": 1.2}
-"""Width of openings that are drawn as points [m]."""
+"""Width of openings drawn as points [m]."""
 
 _OPENING_KINDS: tuple[OpeningKind, ...] = ("door", "passage", "window")
 _MAX_FILL_M = 0.7
-"""A door or window drawn as an area no thicker than this fills its gap in the wall [m]."""
+"""A door or window drawn as an area up to this thick fills its gap in the wall [m]."""
 _BENT = 0.7
-"""An area that fills less than this share of the box around it goes round a bend."""
+"""An area that fills less than this fraction of the box around it is bent."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Placed:
     Attributes
     ----------
     feature : mapping
-        As the file has it.
+        As in the file.
     what : FeatureClass
     geometry : shapely geometry
         In the plan's frame [m].
@@ -46,7 +46,7 @@ class Placed:
 
 
 def walls_of(placed: Sequence[Placed], tolerance_m: float) -> list[RawWall]:
-    """Return the walls of all features: areas, lines, or else what stands between rooms."""
+    """Return the walls of all features: areas, lines, or otherwise those between rooms."""
     areas = list(_areas(placed, "wall"))
     lines = [wall for p in _of_kind(placed, "wall") for wall in _line_walls(p)]
     rooms = [] if areas else list(_areas(placed, "room"))
@@ -82,7 +82,7 @@ def _areas(placed: Sequence[Placed], kind: Kind) -> Iterator[tuple[Placed, Polyg
 
 
 def _parts(geometry: BaseGeometry) -> list[BaseGeometry]:
-    """Points, lines and polygons of a geometry, collections opened."""
+    """Points, lines and polygons of a geometry, collections flattened."""
     parts = list(shapely.get_parts(geometry))
     if isinstance(geometry, GeometryCollection):
         return [inner for part in parts for inner in _parts(part)]
@@ -117,7 +117,7 @@ def _middle(wall: RawWall) -> Point:
 
 
 def _like(wall: RawWall, p: Placed) -> RawWall:
-    """Give a wall what its feature tells of it."""
+    """Give a wall the properties of its feature."""
     thickness_m = number_of(p.feature, "thickness_m", "thickness", "width")
     return replace(
         wall,
@@ -160,7 +160,7 @@ def _part_openings(
 
 
 def _boxed(part: Polygon, kind: OpeningKind, length_m: float, *, is_long: bool) -> RawOpening:
-    """Opening as long as the box around an area, along it if that has a long side."""
+    """Opening as long as the box around an area, along its long side if it has one."""
     corners = shapely.get_coordinates(shapely.oriented_envelope(part))
     first, second = corners[1] - corners[0], corners[2] - corners[1]
     x, y = max((first, second), key=lambda side: float(side @ side))

@@ -1,4 +1,4 @@
-"""Curves and profiles of IFC -> points, arcs as chords of bounded error."""
+"""IFC curves and profiles -> points, arcs as chords of bounded error."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ Entity = Any
 Points = list[tuple[float, float]]
 
 MAX_DEPTH = 16
-"""Curves, solids and mapped items that are nested deeper are not followed."""
+"""Deepest nesting of curves, solids and mapped items that is followed."""
 
 
 class UnreadableError(ValueError):
-    """A shape this reader does not know; the message names its class."""
+    """A shape that is not supported; the message names its class."""
 
 
 def curve_points(curve: Entity, chord: float, angle_unit: float, depth: int = 0) -> Points:
@@ -30,7 +30,7 @@ def curve_points(curve: Entity, chord: float, angle_unit: float, depth: int = 0)
     ----------
     curve : entity
     chord : float
-        How far chords may leave an arc, in the file's unit.
+        Largest deviation of chords from an arc, in the file's unit.
     angle_unit : float
         The file's unit of angles [rad].
     depth : int
@@ -57,7 +57,7 @@ def curve_points(curve: Entity, chord: float, angle_unit: float, depth: int = 0)
 
 
 def profile_polygon(profile: Entity, chord: float, angle_unit: float) -> Polygon:
-    """Area of a profile, in the file's unit; raise `UnreadableError` for others."""
+    """Area of a profile in the file's unit; raise `UnreadableError` if not supported."""
     if profile.is_a("IfcRectangleProfileDef"):
         x, y = profile.XDim / 2, profile.YDim / 2
         return _placed(Polygon([(-x, -y), (x, -y), (x, y), (-x, y)]), profile.Position)
@@ -151,7 +151,7 @@ def _arc(
 def _arc_through(
     a: tuple[float, float], b: tuple[float, float], c: tuple[float, float], chord: float
 ) -> Points:
-    """Points of the arc from a over b to c; the straight line where they lie on one."""
+    """Points of the arc from a via b to c; a straight line if they are collinear."""
     (ax, ay), (bx, by), (cx, cy) = a, b, c
     d = 2 * (ax * (by - cy) + bx * (cy - ay) + cx * (ay - by))
     if abs(d) < 1e-12:

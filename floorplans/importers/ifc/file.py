@@ -1,4 +1,4 @@
-"""IFC files: opening them, their units, their storeys."""
+"""IFC files: opening, units, storeys."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from floorplans.importers.units import unit_length
 
 MAX_BYTES = 1_000_000_000
 CHORD_M = 0.02
-"""By default, chords leave an arc by at most this [m]."""
+"""Default largest deviation of chords from an arc [m]."""
 
 _END = b"END-ISO-10303-21;"
 _TAIL_BYTES = 4096
@@ -40,7 +40,7 @@ class Storey:
 
 
 def open_model(path: Path) -> Model:
-    """Read an IFC file; raise `PlanError` where that is not possible."""
+    """Read an IFC file; raise `PlanError` if that fails."""
     try:
         import ifcopenshell
     except ImportError as error:
@@ -57,12 +57,12 @@ def open_model(path: Path) -> Model:
             raise PlanError("the file is cut off: it does not end with END-ISO-10303-21")
     try:
         return ifcopenshell.open(str(path))
-    except Exception as error:  # the library raises what it likes
+    except Exception as error:  # the library raises errors of many types
         raise PlanError(f"not a readable IFC model: {error}") from error
 
 
 def scale_of(model: Model, options: ImportOptions) -> Scale:
-    """Find the units of a model; raise `PlanError` where it does not tell its unit of length."""
+    """Find the units of a model; raise `PlanError` if it states no unit of length."""
     from ifcopenshell.util.unit import calculate_unit_scale
 
     chord_m = options.tolerance_m or CHORD_M
@@ -80,19 +80,19 @@ def scale_of(model: Model, options: ImportOptions) -> Scale:
 
 
 def storey_of(model: Model, level: str | None, metre: float) -> Storey:
-    """Choose a storey by name, number or elevation; without a choice, the only one with walls.
+    """Select a storey by name, number or elevation; by default the only one with walls.
 
     Raises
     ------
     PlanError
-        When there is none, or it is not clear which; the message lists them.
+        When there is none, or the choice is ambiguous; the message lists them.
     """
     storeys = _storeys(model, metre)
     if not storeys:
         n_walls = len(model.by_type("IfcWall"))
         raise PlanError(
             f"the model has no IfcBuildingStorey, so its {n_walls} walls belong to no storey; "
-            "export it from the building program with its storeys"
+            "export it with its storeys from the building program"
         )
     if level is None:
         with_walls = [storey for storey in storeys if storey.walls]
@@ -101,14 +101,14 @@ def storey_of(model: Model, level: str | None, metre: float) -> Storey:
         if not with_walls:
             raise PlanError(f"no storey of the model has walls; {_listed(storeys)}")
         raise PlanError(f"choose a storey; {_listed(storeys)}", ("level",), remedy="level")
-    fitting = [storey for k, storey in enumerate(storeys) if _fits(storey, k, level)]
-    named = [storey for storey in fitting if storey.name.casefold() == level.casefold()]
-    fitting = named or fitting
-    if len(fitting) != 1:
-        found = "no storey" if not fitting else f"{len(fitting)} storeys"
+    matching = [storey for k, storey in enumerate(storeys) if _matches(storey, k, level)]
+    named = [storey for storey in matching if storey.name.casefold() == level.casefold()]
+    matching = named or matching
+    if len(matching) != 1:
+        found = "no storey" if not matching else f"{len(matching)} storeys"
         raise PlanError(f"{found} of that name, number or elevation; {_listed(storeys)}",
                         ("level",), level)  # fmt: skip
-    return fitting[0]
+    return matching[0]
 
 
 def _storeys(model: Model, metre: float) -> list[Storey]:
@@ -127,7 +127,7 @@ def _storeys(model: Model, metre: float) -> list[Storey]:
     return sorted(found, key=lambda storey: storey.elevation_m)
 
 
-def _fits(storey: Storey, number: int, level: str) -> bool:
+def _matches(storey: Storey, number: int, level: str) -> bool:
     names = {str(name).casefold() for name in (storey.entity.Name, storey.entity.LongName) if name}
     if level.casefold() in names or level == str(number):
         return True

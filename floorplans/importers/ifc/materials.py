@@ -1,4 +1,4 @@
-"""Materials of IFC elements, by the names that people give them."""
+"""Materials of IFC elements from their names."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ def dominant_material(
     metre : float
         Length of the file's unit [m].
     layers : mapping of str to str
-        Name or pattern of a material in the file -> KIND:MATERIAL; it goes before the names.
+        Name or pattern of a material in the file -> KIND:MATERIAL; overrides the names.
 
     Returns
     -------
     material : str or None
     thickness_m : float or None
-        None where the element has no layers.
+        None if the element has no layers.
     """
     from ifcopenshell.util.element import get_material
 
@@ -46,7 +46,7 @@ def dominant_material(
 
 
 def layer_count(element: Entity) -> int:
-    """Count the layers of an element's material, 0 where it is none of layers."""
+    """Count the layers of an element's material; 0 if it is not layered."""
     from ifcopenshell.util.element import get_material
 
     material = get_material(element, should_skip_usage=True)

@@ -1,9 +1,9 @@
 """IFC models -> drafts of plans, one storey at a time.
 
 Walls are read from their bodies (the middle of the footprint) and, where they are curved, from
-their axes; their thickness and material from their layers, else from the body. What voids a wall
-is an opening: a door or window where one fills it, else a passage. Slabs and ceilings above tell
-the height. Needs ifcopenshell.
+their axes; their thickness and material from their layers, otherwise from the body. What voids a
+wall is an opening: a door or window if one fills it, otherwise a passage. Slabs and ceilings above
+give the height. Needs ifcopenshell.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ _DAMAGED = (
     ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, ShapelyError,
     TypeError, ValueError,
 )  # fmt: skip
-"""What a model whose entities miss parts, or refer to others of a wrong class, ends in."""
+"""Errors of models whose entities lack parts or refer to a wrong class."""
 
 _SLABS = ("IfcSlab", "IfcRoof", "IfcCovering")
 _CEILING_M = (1.8, 30.0)
 _SAME_CEILING_M = 0.3
 _TO_CEILING_M = 0.35
-"""A wall that ends at most this below the ceiling reaches it: slabs and ceilings are thick [m]."""
+"""A wall that ends at most this below the ceiling reaches it: slabs have a thickness [m]."""
 
 
 def read_ifc(path: Path, options: ImportOptions) -> Draft:
@@ -59,7 +59,7 @@ def read_ifc(path: Path, options: ImportOptions) -> Draft:
     Raises
     ------
     PlanError
-        When the file cannot be read, or it is not clear which storey is meant.
+        When the file cannot be read, or the choice of the storey is ambiguous.
     """
     model = open_model(path)
     try:
@@ -126,7 +126,7 @@ def _is_ceiling(body: Body, floor_m: float) -> bool:
 
 
 def _ceiling(slabs: Sequence[tuple[Entity, Body]], floor_m: float) -> float | None:
-    """Height of the ceiling: of suspended ceilings, else of the lowest slab above.
+    """Height of the ceiling: of suspended ceilings, otherwise of the lowest slab above.
 
     Raises
     ------
@@ -140,8 +140,7 @@ def _ceiling(slabs: Sequence[tuple[Entity, Body]], floor_m: float) -> float | No
     if suspended and suspended[-1] - suspended[0] > _SAME_CEILING_M:
         raise PlanError(
             f"rooms have ceilings at {suspended[0]:.2f} m to {suspended[-1]:.2f} m, and a plan has "
-            "one flat ceiling, for the tracer's rays go up and down between two planes; give the "
-            "one that matters",
+            "one flat ceiling; give the height that matters",
             ("height_m",),
             remedy="height_m",
         )
@@ -149,13 +148,13 @@ def _ceiling(slabs: Sequence[tuple[Entity, Body]], floor_m: float) -> float | No
 
 
 def _highest(walls: Sequence[ReadWall]) -> float | None:
-    """Height at which most of the walls end, to the centimetre."""
+    """Height at which most of the walls end, rounded to 1 cm."""
     tops = Counter(round(wall.top_m, 2) for wall in walls if wall.top_m < _CEILING_M[1])
     return max(tops, key=lambda top: (tops[top], top)) if tops else None
 
 
 def _height(top_m: float, ceiling_m: float | None) -> float | None:
-    """Height of a wall; None where it reaches the ceiling."""
+    """Height of a wall; None if it reaches the ceiling."""
     if ceiling_m is None or top_m >= ceiling_m - _TO_CEILING_M:
         return None
     return top_m
@@ -164,7 +163,7 @@ def _height(top_m: float, ceiling_m: float | None) -> float | None:
 def _within(
     loose: Sequence[RawOpening], walls: Sequence[ReadWall], ceiling_m: float | None
 ) -> Iterator[RawOpening]:
-    """Yield openings that lie between floor and ceiling, cut to there."""
+    """Yield openings between floor and ceiling, clipped to there."""
     for opening in (*loose, *(o for wall in walls for o in wall.openings)):
         head_m = opening.head_m or 0.0
         if ceiling_m is not None:
@@ -182,7 +181,7 @@ def _material(element: Entity | None, scale: Scale, options: ImportOptions) -> s
 
 
 def _georeference(model: Model) -> GeoOrigin | None:
-    """Place of the model's origin, where its site tells one."""
+    """Place of the model's origin, if its site states one."""
     sites = [s for s in model.by_type("IfcSite") if s.RefLatitude and s.RefLongitude]
     if not sites:
         return None
@@ -225,6 +224,6 @@ def _notes(storey: Storey) -> Iterator[str]:
     n_layered = sum(layer_count(wall) > 1 for wall in storey.walls)
     if n_layered:
         yield (
-            f"{n_layered} walls have several layers: each wall is as thick as all of them, and of "
-            "the material of its thickest layer that is known"
+            f"{n_layered} walls have several layers: each wall has their total thickness and "
+            "the material of its thickest known layer"
         )

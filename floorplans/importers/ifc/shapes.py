@@ -1,8 +1,8 @@
-"""Bodies of IFC elements, seen from above.
+"""Bodies of IFC elements in the plan view.
 
-Only what stands is wanted: of each body its footprint and its lowest and highest point. Extrusions
-are read as such; of faces the projections are joined; of differences the first operand is taken,
-for what is cut off walls is openings, which are read by themselves, and roofs.
+Each body gives its footprint and its lowest and highest point. Extrusions are read directly;
+projections of faces are joined; of differences the first operand is used, because what is cut off
+walls is openings, which are read separately, and roofs.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ _BODY = frozenset({
     "Body", "Facetation", "SweptSolid", "Clipping", "CSG", "Brep", "AdvancedBrep", "SurfaceModel",
     "Tessellation", "MappedRepresentation", "SolidModel",
 })  # fmt: skip
-"""Identifiers of bodies, and types of those without an identifier."""
+"""Identifiers of bodies, and types of bodies without one."""
 
 _AXIS = frozenset({"Axis", "Curve2D"})
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Units of the file, and how coarse its arcs may be read.
+    """Units of the file, and the resolution of arcs.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Scale:
     radian : float
         The file's unit of angles [rad].
     chord_m : float
-        How far chords may leave an arc [m].
+        Largest deviation of chords from an arc [m].
     """
 
     metre: float
@@ -60,12 +60,12 @@ class Scale:
 
     @property
     def chord(self) -> float:
-        """How far chords may leave an arc, in the file's unit."""
+        """Largest deviation of chords from an arc, in the file's unit."""
         return self.chord_m / self.metre
 
 
 class Body(NamedTuple):
-    """What a body covers, and between which heights, in the file's world [m]."""
+    """Footprint and heights of a body in the file's world coordinates [m]."""
 
     footprint: BaseGeometry
     z_min: float
@@ -73,7 +73,7 @@ class Body(NamedTuple):
 
 
 def bodies(product: Entity, scale: Scale) -> list[Body]:
-    """Bodies of an element that can be read."""
+    """Readable bodies of an element."""
     found: list[Body] = []
     placement = placement_of(product)
     for item in _items(product, _BODY):
@@ -85,7 +85,7 @@ def bodies(product: Entity, scale: Scale) -> list[Body]:
 
 
 def axis_points(product: Entity, scale: Scale) -> Floats:
-    """Points of an element's axis in the plan view (n, 2) [m]; none if it has no readable axis."""
+    """Points of an element's axis in the plan view (n, 2) [m]; empty if it has no readable axis."""
     placement = placement_of(product)
     for item in _items(product, _AXIS):
         try:
@@ -97,7 +97,7 @@ def axis_points(product: Entity, scale: Scale) -> Floats:
 
 
 def placement_of(product: Entity) -> Matrix:
-    """Placement in the file's world (4, 4), in the file's unit."""
+    """Placement in the file's world coordinates (4, 4), in the file's unit."""
     from ifcopenshell.util.placement import get_local_placement
 
     if product.ObjectPlacement is None:
@@ -145,8 +145,8 @@ def _extrusion(solid: Entity, matrix: Matrix, scale: Scale) -> Body:
     low = [scale.metre * _moved(matrix, ring) for ring in rings(profile)]
     lift = scale.metre * (matrix[:3, :3] @ along)
     corners = np.concatenate([low[0], low[0] + lift])
-    upright = abs(lift[2]) > 0.999 * np.linalg.norm(lift)
-    if upright and abs(matrix[2, :2]).max() < 1e-3:
+    vertical = abs(lift[2]) > 0.999 * np.linalg.norm(lift)
+    if vertical and abs(matrix[2, :2]).max() < 1e-3:
         footprint = Polygon(low[0][:, :2], [ring[:, :2] for ring in low[1:]]).buffer(0)
     else:
         footprint = MultiPoint(corners[:, :2]).convex_hull

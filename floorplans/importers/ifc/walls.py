@@ -24,19 +24,19 @@ from floorplans.walls import OpeningKind
 Floats = NDArray[np.float64]
 
 MIN_TOP_M = 0.3
-"""What ends below this above the floor is no wall [m]."""
+"""Least height of a wall's top above the floor [m]."""
 
 MAX_FOOT_M = 1.0
-"""What begins higher than this above the floor stands on something else [m]."""
+"""Largest height of a wall's foot above the floor; higher ones stand on something else [m]."""
 
-_STRAIGHT_SHARE = 0.85
+_STRAIGHT_FRACTION = 0.85
 _PASSAGE_FOOT_M = 0.1
 _BENT_M = 0.01
 
 
 @dataclass(frozen=True)
 class ReadWall:
-    """What came of a wall: pieces with one thickness and material, and the holes in it."""
+    """A wall as read: pieces of one thickness and material, and the openings."""
 
     pieces: tuple[RawWall, ...]
     openings: tuple[RawOpening, ...]
@@ -46,7 +46,7 @@ class ReadWall:
 def read_wall(
     wall: Entity, floor_m: float, scale: Scale, layers: Mapping[str, str]
 ) -> ReadWall | None:
-    """Read a wall; None where it has no body and no axis, or does not stand on this floor.
+    """Read a wall; None if it has neither body nor axis, or does not stand on this floor.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def read_wall(
         Elevation of the storey [m].
     scale : Scale
     layers : mapping of str to str
-        The user's word on what materials are.
+        Meanings of materials that the user gives.
     """
     parts = _bodies_of_parts(wall, scale)
     top_m = max((body.z_max - floor_m for body in parts), default=np.inf)
@@ -77,7 +77,7 @@ def read_wall(
 
 
 def read_filling(filling: Entity, floor_m: float, scale: Scale) -> RawOpening | None:
-    """Read a door or window that fills no hole in a wall, by its placement and overall size."""
+    """Read a door or window that fills no opening, from its placement and overall size."""
     width_m, height_m = (
         scale.metre * float(size or 0.0) for size in (filling.OverallWidth, filling.OverallHeight)
     )
@@ -94,7 +94,7 @@ def read_filling(filling: Entity, floor_m: float, scale: Scale) -> RawOpening | 
 
 
 def _bodies_of_parts(wall: Entity, scale: Scale) -> list[Body]:
-    """Bodies of a wall, or of what it is put together from."""
+    """Bodies of a wall, or of its parts."""
     from ifcopenshell.util.element import get_decomposition
 
     found = bodies(wall, scale)
@@ -111,8 +111,8 @@ def _centre_lines(
 ) -> Iterator[Line]:
     """Straight centre lines (start, end, thickness) of a wall.
 
-    A straight wall lies in the middle of its footprint; a curved one, chords of it, along its
-    axis moved to the middle; a footprint that is no strip is taken apart.
+    A straight wall lies in the middle of its footprint. A curved wall becomes chords of its axis,
+    moved to the middle. A footprint that is no strip is decomposed.
     """
     if len(axis) > 2 and _bend(axis) > _BENT_M:
         yield from _curved(axis, footprint, layers_m)
@@ -121,8 +121,8 @@ def _centre_lines(
             yield _point(axis[0]), _point(axis[-1]), layers_m
     else:
         along = axis[-1] - axis[0] if len(axis) >= 2 else _long_side(footprint)
-        line, share = _middle_of(footprint, along)
-        if share >= _STRAIGHT_SHARE:
+        line, filled = _middle_of(footprint, along)
+        if filled >= _STRAIGHT_FRACTION:
             yield line
             return
         for raw in walls_of_area(footprint, chord_m):
@@ -130,15 +130,15 @@ def _centre_lines(
 
 
 def _middle_of(footprint: BaseGeometry, along: Floats) -> tuple[Line, float]:
-    """Centre line of the box around a footprint, and the share of the box that it fills."""
+    """Centre line of the box around a footprint, and the fraction of the box that it fills."""
     u = along / np.hypot(*along)
     across = np.array([-u[1], u[0]])
     corners = shapely.get_coordinates(footprint)
     s, t = corners @ u, corners @ across
     middle = across * (t.min() + t.max()) / 2
     thickness_m = float(np.ptp(t))
-    share = float(footprint.area / max(np.ptp(s) * thickness_m, 1e-12))
-    return (_point(u * s.min() + middle), _point(u * s.max() + middle), thickness_m), share
+    filled = float(footprint.area / max(np.ptp(s) * thickness_m, 1e-12))
+    return (_point(u * s.min() + middle), _point(u * s.max() + middle), thickness_m), filled
 
 
 def _curved(axis: Floats, footprint: BaseGeometry, layers_m: float | None) -> Iterator[Line]:
@@ -148,12 +148,12 @@ def _curved(axis: Floats, footprint: BaseGeometry, layers_m: float | None) -> It
     if thickness_m is not None and not footprint.is_empty:
         offsets = (0.0, thickness_m / 2, -thickness_m / 2)
         moved = [LineString(axis).offset_curve(offset) for offset in offsets]
-        line = max(moved, key=lambda curve: _share_within(curve, footprint, thickness_m))
+        line = max(moved, key=lambda curve: _area_within(curve, footprint, thickness_m))
     for start, end in pairwise(shapely.get_coordinates(line)):
         yield _point(start), _point(end), thickness_m
 
 
-def _share_within(curve: BaseGeometry, footprint: BaseGeometry, width_m: float) -> float:
+def _area_within(curve: BaseGeometry, footprint: BaseGeometry, width_m: float) -> float:
     band = curve.buffer(width_m / 2, cap_style="flat")
     return band.intersection(footprint).area
 
@@ -176,7 +176,7 @@ def _openings(
 def _opening_of(
     shapes: Sequence[Body], pieces: Sequence[RawWall], fillings: Sequence[Entity], floor_m: float
 ) -> RawOpening:
-    """Measure a hole along the piece of its wall that it is nearest to."""
+    """Measure an opening along the nearest piece of its wall."""
     footprint = shapely.union_all([shape.footprint for shape in shapes])
     middle = footprint.centroid
     piece = min(pieces, key=lambda p: shapely.linestrings([p.start, p.end]).distance(middle))
@@ -201,7 +201,7 @@ def _kind(filling: Entity) -> OpeningKind:
 
 
 def _bend(axis: Floats) -> float:
-    """How far an axis leaves the straight line between its ends [m]."""
+    """Largest distance of an axis from the straight line between its ends [m]."""
     chord = shapely.linestrings(axis[[0, -1]])
     return float(shapely.distance(chord, shapely.points(axis)).max())
 

@@ -1,7 +1,7 @@
-"""Occupancy grids of ROS map_server, and plain pictures with a scale, read with limits.
+"""Reading of occupancy grids of ROS map_server, and of plain pictures with a scale.
 
-A pixel of value v is occupied with the likelihood (255 - v) / 255, or v / 255 where `negate` is
-set; above `occupied_thresh` it is occupied, below `free_thresh` free, and else unknown.
+A pixel of value v is occupied with the likelihood (255 - v) / 255, or v / 255 if `negate` is set:
+above `occupied_thresh` it is occupied, below `free_thresh` free, and otherwise unknown.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class MapFacts:
-    """What a map's YAML file tells; the defaults are map_server's.
+    """Contents of a map's YAML file; the defaults are map_server's.
 
     Attributes
     ----------
@@ -57,12 +57,12 @@ class MapFacts:
 
 @dataclass(frozen=True)
 class OccupancyGrid:
-    """Which pixels are wall; the first row is the lowest.
+    """Which pixels are wall; the first row is the bottom one.
 
     Attributes
     ----------
     occupied, free : (n_y, n_x) bool
-        Neither is unknown.
+        Other pixels are unknown.
     facts : MapFacts
     notes : tuple of str
     """
@@ -74,14 +74,14 @@ class OccupancyGrid:
 
 
 def read_grid(path: Path, scale_m: float | None) -> OccupancyGrid:
-    """Read a map from its YAML file, or from its picture with the YAML file of its name beside it.
+    """Read a map from its YAML file, or from a picture with a YAML file of the same name.
 
     Parameters
     ----------
     path : Path
     scale_m : float or None
-        Side of a pixel [m]; it goes before the file's resolution, and is needed where there is no
-        YAML file.
+        Side of a pixel [m]; overrides the file's resolution, and is required without a YAML
+        file.
 
     Returns
     -------
@@ -90,7 +90,7 @@ def read_grid(path: Path, scale_m: float | None) -> OccupancyGrid:
     Raises
     ------
     PlanError
-        When a file is missing, of another kind, too large, or does not say what it must.
+        When a file is missing, of another format, too large, or incomplete.
     """
     if scale_m is not None and not (isfinite(scale_m) and scale_m > 0):
         raise PlanError("expected a length above 0 [m]", ("scale",), scale_m)
@@ -116,7 +116,7 @@ def _facts_beside(picture: Path, scale_m: float | None) -> tuple[MapFacts, tuple
             if Path(facts.image).name == picture.name:
                 return facts, ()
             note = (
-                f"{path.name} names the picture {facts.image}; it was taken to mean {picture.name}"
+                f"{path.name} names the picture {facts.image}; it is taken to mean {picture.name}"
             )
             return facts, (note,)
     if scale_m is None:
@@ -130,7 +130,7 @@ def _facts_beside(picture: Path, scale_m: float | None) -> tuple[MapFacts, tuple
 
 
 def _picture_of(path: Path, image: str) -> Path:
-    """Path of the picture a YAML file names; it must lie in or below the YAML file's folder."""
+    """Path of the picture that a YAML file names, in or below the YAML file's folder."""
     folder = path.parent.resolve()
     picture = (folder / image.replace("\0", "")).resolve()
     if not picture.is_relative_to(folder) or picture.suffix.lower() not in PICTURES:
@@ -195,7 +195,7 @@ def _number(value: object, key: str) -> float:
 
 
 def _read_picture(path: Path) -> Image.Image:
-    """Open a picture, refuse a large one by its header, then decode it."""
+    """Open a picture, reject a large one by its header, then decode it."""
     try:
         with warnings.catch_warnings(), path.open("rb") as file:
             warnings.simplefilter("error", Image.DecompressionBombWarning)
@@ -217,7 +217,7 @@ def _read_picture(path: Path) -> Image.Image:
 
 
 def _classified(picture: Image.Image, facts: MapFacts) -> tuple[Mask, Mask]:
-    """Return which pixels are occupied and which are free; the first row is the highest."""
+    """Return which pixels are occupied and which are free; the first row is the top one."""
     seen = np.ones((picture.height, picture.width), dtype=np.bool_)
     if "A" in picture.getbands():
         seen = np.asarray(picture.getchannel("A")) > 127

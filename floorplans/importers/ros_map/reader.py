@@ -1,7 +1,7 @@
 """Occupancy grids of ROS map_server, and plain pictures with a scale -> Draft.
 
-What is small and stands alone, such as a pillar, is kept as the ring around it; all else becomes
-straight walls along the building's directions. Doors are the gaps that the picture has.
+Small isolated objects, such as pillars, are kept as the ring around them; everything else becomes
+straight walls along the building's directions. Doors are the gaps in the picture.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from floorplans.importers.ros_map.vectorise import walls_of_picture
 from floorplans.importers.units import BUILDING_M
 
 TOLERANCE_PX = 1.5
-"""By default, walls run at most this far from the middle of their pixels [pixels]."""
+"""Default largest distance of walls from the middle of their pixels [pixels]."""
 
 MAX_OBSTACLE_M = 1.5
-"""What stands alone and is no longer than this is an obstacle [m]."""
+"""Largest length of an isolated object that is an obstacle [m]."""
 
-_CLOSED_M = 0.1  # half the width of gaps in walls that are taken for noise [m]
-_SPECK_M = 0.15  # what stands alone and is no longer is noise [m]
-_SQUAT = 0.35  # width over length from which what stands alone is an obstacle, not a wall
-_BOXY = 0.9  # share of the box around it that an obstacle fills to be one
+_CLOSING_M = 0.1  # half the width of gaps in walls that count as noise [m]
+_SPECK_M = 0.15  # largest length of an isolated object that is noise [m]
+_SQUAT = 0.35  # width over length above which an isolated object is an obstacle, not a wall
+_BOXY = 0.9  # fraction of the box around it that a box-shaped obstacle fills
 _EVERYWHERE = np.ones((3, 3), dtype=np.bool_)
 
 
@@ -62,7 +62,7 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
     Raises
     ------
     PlanError
-        When a file cannot be read, or shows no wall.
+        When a file cannot be read, or contains no wall.
     """
     grid = read_grid(path, options.scale_m)
     pixel_m = grid.facts.resolution_m
@@ -89,7 +89,7 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
 
 
 def _check_extent(occupied: Mask, pixel_m: float) -> None:
-    """Refuse a scale at which what is drawn is no building."""
+    """Reject a scale at which the drawing is no building."""
     rows, columns = np.nonzero(occupied)
     width_m, depth_m = float(np.ptp(columns) + 1) * pixel_m, float(np.ptp(rows) + 1) * pixel_m
     low_m, high_m = BUILDING_M
@@ -104,8 +104,8 @@ def _check_extent(occupied: Mask, pixel_m: float) -> None:
 
 
 def _sort(occupied: Mask, pixel_m: float) -> _Sorted:
-    """Close small gaps, and tell walls, obstacles and specks apart."""
-    reach = max(1, round(_CLOSED_M / pixel_m))
+    """Close small gaps, and separate walls, obstacles and specks."""
+    reach = max(1, round(_CLOSING_M / pixel_m))
     wide = np.pad(occupied, reach)
     closed = np.array(binary_closing(wide, _EVERYWHERE, iterations=reach), dtype=np.bool_)
     closed = closed[reach:-reach, reach:-reach]
@@ -142,7 +142,7 @@ def _hull(alone: Mask, x: int, y: int) -> Polygon:
 
 
 def _ring(hull: Polygon, tolerance_px: float) -> list[RawWall]:
-    """Return the walls around an obstacle: a box, or a polygon of as much area as its hull."""
+    """Return the walls around an obstacle: a box, or a polygon of the same area as its hull."""
     box = shapely.oriented_envelope(hull)
     if isinstance(box, Polygon) and hull.area > _BOXY * box.area:
         return block_walls(box)
@@ -152,7 +152,7 @@ def _ring(hull: Polygon, tolerance_px: float) -> list[RawWall]:
 
 
 def _in_metres(wall: RawWall, facts: MapFacts) -> RawWall:
-    """Bring a wall from pixels into the map's frame."""
+    """Transform a wall from pixels to the map's frame."""
     x0, y0, yaw = facts.origin
     turn = np.array([[cos(yaw), sin(yaw)], [-sin(yaw), cos(yaw)]]) * facts.resolution_m
     (a, b), (c, d) = (np.array([wall.start, wall.end]) @ turn + np.array([x0, y0])).tolist()
@@ -162,7 +162,7 @@ def _in_metres(wall: RawWall, facts: MapFacts) -> RawWall:
 def _deviation(
     solid: NDArray[np.bool_], walls: list[RawWall], tolerance_px: float, pixel_m: float
 ) -> str:
-    """Say how far the walls' pixels lie outside the walls."""
+    """Describe how far the walls' pixels lie outside the walls."""
     pixels = shapely.points(np.argwhere(solid)[:, ::-1] + 0.5)
     bodies = [
         LineString([wall.start, wall.end]).buffer((wall.thickness_m or 1.0) / 2) for wall in walls

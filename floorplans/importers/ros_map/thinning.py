@@ -1,4 +1,4 @@
-"""Lines one pixel wide in the middle of what is solid in a picture, as polylines."""
+"""Skeletons of solid pixels: lines one pixel wide, as polylines."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from shapely.geometry import LineString
 Mask = NDArray[np.bool_]
 
 _RING = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
-"""Neighbours of a pixel (row, column), going round it."""
+"""Neighbours of a pixel (row, column), in circular order."""
 
 
 def thinned(solid: Mask) -> Mask:
-    """Thin what is solid to lines one pixel wide that are connected as it is.
+    """Thin solid pixels to lines one pixel wide with the same connectivity.
 
     The method is that of T. Y. Zhang and C. Y. Suen, A fast parallel algorithm for thinning digital
     patterns, Communications of the ACM 27 (1984) 236-239.
@@ -33,10 +33,10 @@ def thinned(solid: Mask) -> Mask:
     while removed:
         removed = False
         for first in (True, False):
-            loose = _removable(image, at, first)
-            image[tuple(at[loose].T)] = False
-            removed |= bool(loose.any())
-            at = at[~loose]
+            removable = _removable(image, at, first)
+            image[tuple(at[removable].T)] = False
+            removed |= bool(removable.any())
+            at = at[~removable]
     return image[1:-1, 1:-1]
 
 
@@ -54,7 +54,7 @@ def _removable(image: Mask, at: NDArray[np.int64], first: bool) -> Mask:
 
 
 def polylines(lines: Mask) -> list[LineString]:
-    """Chain the pixels of thin lines from junction to junction.
+    """Chain the pixels of thin lines between junctions.
 
     Parameters
     ----------
@@ -63,14 +63,14 @@ def polylines(lines: Mask) -> list[LineString]:
     Returns
     -------
     list of shapely.geometry.LineString
-        Through the centres (column, row) of pixels that touch.
+        Through the centres (column, row) of adjacent pixels.
     """
     image = np.pad(lines, 1)
     at = np.argwhere(image)
     steps: list[NDArray[np.int64]] = []
     for row, column in ((0, 1), (1, 0), (1, 1), (1, -1)):
         linked = image[at[:, 0] + row, at[:, 1] + column]
-        if row and column:  # a diagonal step only where there is no way along two sides
+        if row and column:  # a diagonal step only where no step along two sides exists
             linked &= ~image[at[:, 0] + row, at[:, 1]] & ~image[at[:, 0], at[:, 1] + column]
         here = at[linked]
         steps.append(np.stack([here, here + np.array([row, column])], axis=1))
@@ -80,14 +80,14 @@ def polylines(lines: Mask) -> list[LineString]:
 
 
 def pruned(lines: list[LineString], thickness: NDArray[np.float64]) -> list[LineString]:
-    """Remove the short side branches that thinning leaves in corners, and join what goes on.
+    """Remove the short side branches that thinning leaves in corners, and join the rest.
 
     Parameters
     ----------
     lines : list of shapely.geometry.LineString
         Through pixels (column, row).
     thickness : (n_y, n_x) float64
-        Of what is solid there [pixels].
+        Of the solid there [pixels].
 
     Returns
     -------

@@ -1,11 +1,11 @@
-"""What is solid in a picture -> straight walls along the building's directions.
+"""Solid pixels -> straight walls along the building's directions.
 
-    lines = the middle of what is solid, cut where a straight line no longer follows it
-    directions = those that most of the lines have; a line takes the next one if that moves it
-        by less than the tolerance
-    corners = points that fit all lines best, in the sense of least squares
+    lines: the skeleton of the solid, split where a straight line no longer follows it
+    directions: those of most lines; a line takes the nearest one if that moves it by less than
+        the tolerance
+    corners: the least-squares fit to all lines
 
-The place and thickness of a wall are those of all the pixels nearest to its line.
+The position and thickness of a wall are those of all pixels nearest to its line.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 _CORNERS = ((0.0, 2.0), (1.0, 2.0), (0.0, 2.0))
-"""Passes in which corners are made one that lie no farther apart than this times the width of the
-wall, first where a line along one of the building's directions joins them, then an oblique one."""
+"""Passes that merge corners no farther apart than these multiples of the wall's width, joined by a
+line along a direction of the building, and by an oblique line."""
 _OBLIQUE_DEG = 15.0
 _FEW_PIXELS = 12
-_FITTED_DEG = 30.0  # largest turn from a line's ends to its pixels
+_FITTED_DEG = 30.0  # largest angle between a line's ends and its pixels
 _WINDOW_DEG = 6.0  # half the width of a direction's peak
-_LEAST_SHARE = 0.1  # of the length of all lines, a direction of the building has
-_SIDE_DEG = 1.0  # directions this near to a side of the picture are along it
-_RIGHT_DEG = 3.0  # directions this near to a right angle are at one
+_LEAST_FRACTION = 0.1  # of the length of all lines: the least of a direction of the building
+_SIDE_DEG = 1.0  # directions this near to a side of the picture are parallel to it
+_RIGHT_DEG = 3.0  # directions this near to a right angle are perpendicular
 _ALONG, _STAY = 30.0, 0.02  # weights of the direction of a line, and of the place of a corner
 
 
@@ -54,7 +54,7 @@ class _Net:
     pixels : tuple of (k, 2) float64, m of them
         Centres (x, y) of the solid pixels nearest to each line [pixels].
     width : (m,) float64
-        Of what is solid at each line [pixels].
+        Of the solid at each line [pixels].
     """
 
     corners: Floats
@@ -74,9 +74,9 @@ def walls_of_picture(solid: Mask, tolerance_px: float) -> list[RawWall]:
     Parameters
     ----------
     solid : (n_y, n_x) bool
-        The first row is the lowest.
+        The first row is the bottom one.
     tolerance_px : float
-        How far a wall may run from the middle of its pixels [pixels].
+        Largest distance of a wall from the middle of its pixels [pixels].
 
     Returns
     -------
@@ -86,7 +86,7 @@ def walls_of_picture(solid: Mask, tolerance_px: float) -> list[RawWall]:
     net = _net(solid, tolerance_px)
     if not len(net.lines):
         return []
-    corners = _to_the_ends(net, _fitted(net, _snapped(net, tolerance_px)))
+    corners = _extended_to_pixel_ends(net, _fitted(net, _snapped(net, tolerance_px)))
     return [
         RawWall((a[0], a[1]), (b[0], b[1]), _thickness(corners[line], pixels, width))
         for line, (a, b), pixels, width in zip(
@@ -96,7 +96,7 @@ def walls_of_picture(solid: Mask, tolerance_px: float) -> list[RawWall]:
 
 
 def _thickness(ends: Floats, pixels: Floats, width: float) -> float:
-    """Pixels across a line, counted over the middle of it, where it is long enough to have one."""
+    """Mean number of pixels across a line, over its middle half if it is long enough."""
     step = ends[1] - ends[0]
     length = float(np.hypot(*step))
     if length < 3 * width:
@@ -106,7 +106,7 @@ def _thickness(ends: Floats, pixels: Floats, width: float) -> float:
 
 
 def _net(solid: Mask, tolerance_px: float) -> _Net:
-    """Lines in the middle of what is solid, straight to within the tolerance."""
+    """Lines in the middle of the solid, straight to within the tolerance."""
     thickness = 2.0 * np.asarray(distance_transform_edt(np.pad(solid, 1)))[1:-1, 1:-1] - 1.0
     lines = polylines(thinned(solid))
     for _ in range(2):
@@ -124,10 +124,10 @@ def _net(solid: Mask, tolerance_px: float) -> _Net:
 
 
 def _contracted(net: _Net, share: float, oblique_share: float) -> _Net:
-    """Make one corner of those joined by lines shorter than a share of their width.
+    """Merge corners joined by lines shorter than a fraction of their width.
 
-    Thinning cuts off corners, and draws the line of a thick wall towards a wall that ends on it:
-    that gives lines little longer than the wall is thick, and oblique to the building.
+    Thinning cuts corners, and bends the line of a thick wall towards a wall that ends on it: the
+    result is oblique lines little longer than the wall is thick.
     """
     if not len(net.lines):
         return net
@@ -152,7 +152,7 @@ def _contracted(net: _Net, share: float, oblique_share: float) -> _Net:
 
 
 def _is_oblique(net: _Net) -> Mask:
-    """Which lines run along none of the building's directions."""
+    """Which lines have none of the building's directions."""
     lengths = np.hypot(*net.steps.T)
     angles = np.arctan2(net.steps[:, 1], net.steps[:, 0])
     off = np.abs(_turn(_main_directions(angles, lengths)[None, :] - angles[:, None]))
@@ -160,7 +160,7 @@ def _is_oblique(net: _Net) -> Mask:
 
 
 def _pieces(line: LineString, tolerance_px: float) -> list[Floats]:
-    """Cut a chain of pixels where it leaves the straight line between the cuts."""
+    """Split a chain of pixels where it leaves the straight line between the splits."""
     points = shapely.get_coordinates(line)
     kept = shapely.get_coordinates(line.simplify(tolerance_px))
     cuts = [0]
@@ -171,7 +171,7 @@ def _pieces(line: LineString, tolerance_px: float) -> list[Floats]:
 
 
 def _nearest_pixels(solid: Mask, pieces: list[Floats]) -> list[Floats]:
-    """Share the solid pixels out among the pieces they are nearest to."""
+    """Assign the solid pixels to the nearest pieces."""
     if not pieces:
         return []
     owner = np.repeat(np.arange(len(pieces)), [len(piece) for piece in pieces])
@@ -183,7 +183,7 @@ def _nearest_pixels(solid: Mask, pieces: list[Floats]) -> list[Floats]:
 
 
 def _snapped(net: _Net, tolerance_px: float) -> Floats:
-    """Direction of each line [rad]: one of the building's, if that moves its ends little enough."""
+    """Direction of each line [rad]: one of the building's, if within the tolerance at its ends."""
     lengths = np.hypot(*net.steps.T)
     angles = np.array(
         [_direction(step, pixels) for step, pixels in zip(net.steps, net.pixels, strict=True)]
@@ -195,7 +195,7 @@ def _snapped(net: _Net, tolerance_px: float) -> Floats:
 
 
 def _direction(step: Floats, pixels: Floats) -> float:
-    """Direction of a line [rad]: that of its pixels, if they are long enough to have one."""
+    """Direction of a line [rad]: that of its pixels, if there are enough."""
     chord = float(np.arctan2(step[1], step[0]))
     if len(pixels) < _FEW_PIXELS:
         return chord
@@ -207,7 +207,7 @@ def _direction(step: Floats, pixels: Floats) -> float:
 
 
 def _main_directions(angles: Floats, lengths: Floats) -> Floats:
-    """Directions [rad] that have much of the length of all lines, the longest first."""
+    """Directions [rad] with much of the length of all lines, in descending order."""
     main: list[float] = []
     left = lengths.copy()
     window = np.radians(_WINDOW_DEG)
@@ -215,7 +215,7 @@ def _main_directions(angles: Floats, lengths: Floats) -> Floats:
         off = _turn(angles[None, :] - angles[:, None])
         shares = (np.abs(off) <= window) @ left
         best = int(shares.argmax())
-        if main and shares[best] < _LEAST_SHARE * lengths.sum():
+        if main and shares[best] < _LEAST_FRACTION * lengths.sum():
             break
         inside = np.abs(off[best]) <= window
         angle = angles[best] + float(np.average(off[best][inside], weights=left[inside] + 1e-12))
@@ -225,7 +225,7 @@ def _main_directions(angles: Floats, lengths: Floats) -> Floats:
 
 
 def _at_right_angle(angle: float, main: list[float]) -> float:
-    """Turn a direction along a side of the picture, or square to the main one, if it nearly is."""
+    """Align a direction with a side of the picture, or at right angles to the main direction."""
     nearly = [(0.0, _SIDE_DEG), (np.pi / 2, _SIDE_DEG)]
     nearly += [(main[0] + np.pi / 2, _RIGHT_DEG)] if main else []
     for wanted, within_deg in nearly:
@@ -236,16 +236,16 @@ def _at_right_angle(angle: float, main: list[float]) -> float:
 
 
 def _turn(angle: Floats) -> Floats:
-    """Bring a turn of a line into -90 to 90 degrees [rad]."""
+    """Reduce an angle between lines to [-pi / 2, pi / 2) [rad]."""
     return (angle + np.pi / 2) % np.pi - np.pi / 2
 
 
 def _fitted(net: _Net, directions: Floats) -> Floats:
     """Corners (n, 2) for which the lines have their directions and run through their pixels.
 
-    Unknown are the coordinates of all corners; each line gives two equations, weighted with the
-    root of its length: both its ends have one and the same coordinate across it, and the middle of
-    them has that of the middle of its pixels.
+    The unknowns are the coordinates of all corners. Each line gives two equations, weighted by the
+    root of its length: its ends have the same coordinate across it, and their midpoint has that of
+    the mean of its pixels.
     """
     n, m = len(net.corners), len(net.lines)
     first, second = net.lines.T
@@ -276,8 +276,8 @@ def _fitted(net: _Net, directions: Floats) -> Floats:
     return lsqr(matrix, right, atol=1e-12, btol=1e-12, x0=net.corners.ravel())[0].reshape(-1, 2)
 
 
-def _to_the_ends(net: _Net, corners: Floats) -> Floats:
-    """Move loose ends of lines to the ends of their pixels, which thinning has cut off."""
+def _extended_to_pixel_ends(net: _Net, corners: Floats) -> Floats:
+    """Move free ends of lines to the ends of their pixels, which thinning has cut off."""
     moved = corners.copy()
     degree = np.bincount(net.lines.ravel(), minlength=len(corners))
     for line, pixels in zip(net.lines.tolist(), net.pixels, strict=True):

@@ -1,4 +1,4 @@
-"""Everything doubtful about a plan is told with its place, and what is safe is mended."""
+"""Everything doubtful about a plan is told with its place, and what is safe is repaired."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import floorplans
 from floorplans import Opening, Wall
 from floorplans.checks.inspection import inspect
 from floorplans.loading import loads_unchecked
-from floorplans.repair.plan import mend
+from floorplans.repair.plan import repair_plan
 from floorplans.unchecked import PlanFile
 
 DOOR = Opening(1.0, 1.0, 0.0, 2.1, "door")
@@ -116,16 +116,16 @@ def test_wrong_numbers_hide_what_follows_from_them() -> None:
 
 def test_nothing_to_mend_changes_nothing() -> None:
     plan = floorplans.load("flat")
-    assert mend(plan).changes == ()
-    assert mend(plan).plan.walls == plan.walls
+    assert repair_plan(plan).changes == ()
+    assert repair_plan(plan).plan.walls == plan.walls
 
 
 def test_mended_plan_is_beyond_doubt_and_tells_what_was_done() -> None:
     partition = wall((3.0, 0.03), (3.0, 3.96), DOOR)
-    mended = mend(box((partition,), source=(1.0, 1.0, 1.5)))
-    assert warnings_of(*mended.plan.walls[4:]) == []
-    assert len(mended.changes) == 2
-    text = mended.toml()
+    repaired = repair_plan(box((partition,), source=(1.0, 1.0, 1.5)))
+    assert warnings_of(*repaired.plan.walls[4:]) == []
+    assert len(repaired.changes) == 2
+    text = repaired.toml()
     assert text.startswith("# Repaired:\n#   (3, 0.03)")
     again = floorplans.loads(text)
     moved = next(w for w in again.walls if w.openings)
@@ -138,6 +138,6 @@ def test_outline_follows_its_walls() -> None:
     outline = Polygon([(0.0, 0.04), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0)])
     torn = replace(loads_unchecked(ROOM).plan, outline=outline, walls=ring(corners, "concrete"))
     assert inspect(PlanFile.of(torn))[0].severity == "error"
-    mended = mend(torn)
-    assert floorplans.FloorPlan.of(mended.plan).outline.equals(Polygon(corners))
-    assert any("corner of the outline" in str(change) for change in mended.changes)
+    repaired = repair_plan(torn)
+    assert floorplans.FloorPlan.of(repaired.plan).outline.equals(Polygon(corners))
+    assert any("corner of the outline" in str(change) for change in repaired.changes)

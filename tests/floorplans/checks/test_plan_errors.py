@@ -185,15 +185,15 @@ CASES = {
     ),
     "outline not closed": (
         edited(RING, "outline = [[0, 0], [6, 0], [6, 4], [0, 4]]"),
-        "outline[3] = [0.0, 4.0]: outline is not closed: repeat the first point [0.0, 0.0]",
+        "outline[3] = [0.0, 4.0]: outline is not closed; repeat the first point [0.0, 0.0]",
     ),
     "hole not closed": (
         edited(RING, f"{RING}\nholes = [[[1, 1], [2, 1], [2, 2], [1, 2]]]"),
-        "holes[0][3] = [1.0, 2.0]: holes[0] is not closed: repeat the first point [1.0, 1.0]",
+        "holes[0][3] = [1.0, 2.0]: holes[0] is not closed; repeat the first point [1.0, 1.0]",
     ),
     "outline of two corners": (
         edited(RING, "outline = [[0, 0], [6, 0], [0, 0]]"),
-        "expected at least three corners, then the first one again",
+        "expected at least three corners and the first one again",
     ),
     "outline crosses itself": (
         edited(RING, "outline = [[0, 0], [6, 0], [0, 4], [6, 4], [0, 0]]"),

@@ -28,8 +28,8 @@ from floorplans.importers import (
     assemble,
     import_plan,
 )
-from floorplans.importers.assembly.source_and_start import CELL_M, place
-from floorplans.importers.centrelines.align import along_walls, squared
+from floorplans.importers.assembly.source_and_start import CELL_M, choose_source_and_start
+from floorplans.importers.centrelines.align import aligned_to_main_directions, along_walls
 from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
 from floorplans.importers.centrelines.materials import by_material
@@ -183,7 +183,7 @@ def test_a_door_in_the_outline_is_filled_and_told():
 def test_an_opening_in_no_wall_is_dropped_and_told():
     result = made(replace(HALL, openings=(door(15, 25),)))
     assert [str(change) for change in result.changes] == [
-        "(5, 5): door that stands in no wall dropped"
+        "(5, 5): door that lies in no wall dropped"
     ]
 
 
@@ -234,15 +234,15 @@ def test_random_offices_are_plans_whose_source_can_be_reached(seed: int):
 
 def test_source_and_start_are_far_apart_and_off_the_walls():
     walls = [Wall(w.start, w.end, "brick", 0.3, 3.0) for w in ring(0, 0, 12, 8)]
-    places = place(box(0, 0, 12, 8), walls, 3.0)
+    places = choose_source_and_start(box(0, 0, 12, 8), walls, 3.0)
     assert Point(places.source).distance(box(0, 0, 12, 8).boundary) == 3.5
     assert Point(places.start).distance(box(0, 0, 12, 8).boundary) >= 0.5
-    assert places.way_m > 6
+    assert places.distance_m > 6
 
 
 def test_the_start_is_found_from_a_given_source():
     walls = [Wall(w.start, w.end, "brick", 0.3, 3.0) for w in ring(0, 0, 12, 8)]
-    places = place(box(0, 0, 12, 8), walls, 3.0, source=(1.0, 1.0))
+    places = choose_source_and_start(box(0, 0, 12, 8), walls, 3.0, source=(1.0, 1.0))
     assert places.source == (1, 1)
     assert places.start == (11.5, 7.5)
 
@@ -259,7 +259,7 @@ def test_walls_are_cut_where_the_material_changes_for_long():
 
 def test_walls_turn_into_the_main_directions_but_oblique_ones_stay():
     walls = [RawWall((0, 0), (10, 0)), RawWall((0, 0), (0.02, 5)), RawWall((0, 0), (4, 3))]
-    turned = squared(walls)
+    turned = aligned_to_main_directions(walls)
     assert turned[0] == walls[0]
     assert turned[1].start[0] == pytest.approx(turned[1].end[0])
     assert turned[2] == walls[2]

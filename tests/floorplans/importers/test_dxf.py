@@ -110,7 +110,7 @@ def test_a_missing_unit_that_could_be_two_is_asked_for(tmp_path: Path):
     doc = draw.new(0)
     draw.add_rings(doc.modelspace(), draw.bodies(), "wall")
     message = refusal(doc, tmp_path)
-    assert "does not tell its unit" in message
+    assert "does not state its unit" in message
     assert "give the unit: mm for 8 m x 6 m" in message
     assert_size = imported(doc, tmp_path, unit="mm").plan.bounds
     assert assert_size == pytest.approx((0, 0, 7.7, 5.7), abs=0.01)

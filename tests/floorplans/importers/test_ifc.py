@@ -110,7 +110,7 @@ def test_written_plan_reads_back_and_tells_what_was_assumed(house_file) -> None:
     imported = import_plan(house_file)
     text = imported.toml()
     assert loads(text) == imported.plan
-    assert "assumed: the file knows no source" in text
+    assert "assumed: the file states no source" in text
     assert any("several layers" in line for line in imported.report)
     assert any(line == "layer IfcWall: 5 objects: walls" for line in imported.report)
 
@@ -211,7 +211,7 @@ def test_model_without_unit_needs_one(tmp_path) -> None:
 
 
 def test_model_in_a_wrong_unit_is_no_building(house_file) -> None:
-    assert "more than a building does" in message_of(house_file, unit="m")
+    assert "more than any building" in message_of(house_file, unit="m")
 
 
 def test_model_without_storeys(tmp_path) -> None:

@@ -123,7 +123,7 @@ def test_pieces_of_one_wall_are_joined_over_small_gaps():
 def test_pieces_of_like_thickness_are_joined_where_that_is_asked():
     pieces = [wall((0, 0), (3, 0), 0.4), wall((3, 0), (4, 0), 0.36)]
     assert len(repair_walls(pieces).walls) == 2
-    (joined,) = repair_walls(pieces, thickness_share=0.2).walls
+    (joined,) = repair_walls(pieces, thickness_fraction=0.2).walls
     assert joined.thickness_m == pytest.approx((3 * 0.4 + 0.36) / 4, abs=5e-4)
 
 

@@ -129,5 +129,5 @@ def test_a_wall_whose_sides_differ_is_refused_but_not_a_floor() -> None:
     plan = replace(FLAT, materials=(tiled,), floor_material="tiled", floor_thickness_m=0.2)
     assert plan.floor_material == "tiled"
     wall = replace(FLAT.walls[-1], material="tiled", thickness_m=0.2)
-    with pytest.raises(PlanError, match="these layers differ from side to side"):
+    with pytest.raises(PlanError, match="these layers are not symmetric"):
         replace(FLAT, materials=(tiled,), walls=(*FLAT.walls[:-1], wall))

@@ -245,7 +245,7 @@ def test_options_that_contradict(made, monkeypatch, options, expected) -> None:
 
 
 def test_room_the_cases_are_edits_of_is_itself_in_order(tmp_path) -> None:
-    assert done("plan", "check", room_file(tmp_path, ROOM)).endswith("room.toml is in order\n")
+    assert done("plan", "check", room_file(tmp_path, ROOM)).endswith("room.toml is valid\n")
 
 
 def test_command_knows_every_remedy_that_the_libraries_name() -> None:

@@ -20,7 +20,7 @@ def test_new_plan_passes_the_check_and_is_not_overwritten(tmp_path) -> None:
     target = tmp_path / "my.toml"
     assert done("plan", "new", "--size", "40x25", "-o", target).startswith(f"wrote {target}")
     assert floorplans.load(target).bounds == (0.0, 0.0, 40.0, 25.0)
-    assert done("plan", "check", target).endswith("my.toml is in order\n")
+    assert done("plan", "check", target).endswith("my.toml is valid\n")
     before = target.read_text()
     assert "--force replaces it" in fault("plan", "new", "-o", target)
     assert target.read_text() == before
@@ -38,7 +38,7 @@ def test_warnings_are_told_with_their_places_and_end_well(tmp_path) -> None:
     text = done("plan", "check", room_file(tmp_path, SHORT))
     assert "warning  (3.000, 0.030)  almost meets: an end of walls[1] is 0.03 m from" in text
     assert "warning  (3.000, 3.960)  almost meets" in text
-    assert text.endswith("room.toml is in order, but see 2 warnings above\n")
+    assert text.endswith("room.toml is valid, but see 2 warnings above\n")
 
 
 def test_several_errors_are_all_told(tmp_path) -> None:
@@ -66,20 +66,20 @@ def test_fix_mends_in_place_and_keeps_what_was(tmp_path) -> None:
     path = room_file(tmp_path, SHORT)
     result = run("plan", "check", path, "--fix")
     assert result.exit_code == 0
-    assert result.stderr.count("mended (3, ") == 2
+    assert result.stderr.count("repaired (3, ") == 2
     assert (tmp_path / "room.toml.bak").read_text() == SHORT
-    assert result.stdout.endswith("room.toml is in order\n")
+    assert result.stdout.endswith("room.toml is valid\n")
     assert path.read_text().startswith("# Repaired:")
     assert floorplans.load(path) == floorplans.load(path)
     again = run("plan", "check", path, "--fix")
-    assert "nothing that is safe to mend" in again.stderr
+    assert "nothing to repair" in again.stderr
 
 
 def test_fix_into_another_file_leaves_the_plan_alone(tmp_path) -> None:
-    path, target = room_file(tmp_path, SHORT), tmp_path / "mended.toml"
+    path, target = room_file(tmp_path, SHORT), tmp_path / "repaired.toml"
     done("plan", "check", path, "--fix", "-o", target)
     assert path.read_text() == SHORT
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["mended.toml", "room.toml"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["repaired.toml", "room.toml"]
     told = json.loads(done("plan", "check", target, "--json"))
     assert told["findings"] == []
 
