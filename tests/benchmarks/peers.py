@@ -4,7 +4,7 @@
 
 traces the flat and a small office to receivers drawn at random, path by path, and writes the
 tables into docs/performance.md. rssnav's paths are those of the brute force (tests/reference.py);
-the tables count how many of them the others find, and how many spurious ones. PYTHON
+the tables count how many of them the others find, and their spurious paths. PYTHON
 has sionna-rt, which needs libLLVM 17 or newer; without it the tables lack Sionna RT.
 """
 
