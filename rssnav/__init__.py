@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from rssnav.learning_parameters import QLearning
     from rssnav.planning import Path, Solution, greedy_path, shortest_path, value_iteration
     from rssnav.result_file import ResultFileError
-    from rssnav.results import Schedule, TrainingResult
+    from rssnav.results import TrainingResult
+    from rssnav.schedule import Schedule
     from rssnav.training import TrainingInterrupted, train
     from rssnav.world import ACTION_NAMES, ACTIONS, GridWorld, WorldError
 
@@ -59,7 +60,8 @@ _HOMES = {
     "discrete_states": ("ExactStates", "Fluctuation", "IntervalStates", "ToleranceStates"),
     "learning_parameters": ("QLearning",),
     "planning": ("Path", "Solution", "greedy_path", "shortest_path", "value_iteration"),
-    "results": ("Schedule", "TrainingResult"),
+    "results": ("TrainingResult",),
+    "schedule": ("Schedule",),
     "result_file": ("ResultFileError",),
     "training": ("TrainingInterrupted", "train"),
     "world": ("ACTIONS", "ACTION_NAMES", "GridWorld", "WorldError"),

@@ -12,7 +12,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import h5py
 import numpy as np
@@ -30,7 +30,7 @@ from rssnav.discrete_states import (
     ToleranceStates,
 )
 from rssnav.learning_parameters import QLearning
-from rssnav.results import Schedule, TrainingResult
+from rssnav.schedule import Schedule
 from rssnav.world import GridWorld
 
 FORMAT = "rssnav-training"
@@ -69,11 +69,40 @@ _Q_ARRAY = {"q": ("1", "final Q of each state and action, -inf where it is impos
 _WORLD_SCALARS = ("start_state", "speed", "shape", "source", "plan_name", "plan_sha256")
 
 
+class ResultContents(Protocol):
+    """What a file stores of a `TrainingResult`, besides its arrays of the same names."""
+
+    @property
+    def world(self) -> GridWorld:
+        """World of the training."""
+        ...
+
+    @property
+    def agent(self) -> Agent:
+        """Agent that was trained."""
+        ...
+
+    @property
+    def learning(self) -> QLearning:
+        """Learning parameters."""
+        ...
+
+    @property
+    def schedule(self) -> Schedule:
+        """Length and seed."""
+        ...
+
+    @property
+    def q(self) -> NDArray[np.float64] | None:
+        """Final Q, or None."""
+        ...
+
+
 class ResultFileError(ValueError):
     """A file is not a training result of this format and version, or it is damaged."""
 
 
-def save_result(result: TrainingResult, path: str | Path) -> None:
+def write_result_file(result: ResultContents, path: Path) -> None:
     """Write a result to an HDF5 file, replacing it only once it is complete.
 
     Raises
@@ -87,7 +116,7 @@ def save_result(result: TrainingResult, path: str | Path) -> None:
         temporary.write_bytes(content)
 
 
-def _write(result: TrainingResult, agent: AgentDescription, file: h5py.File) -> None:
+def _write(result: ResultContents, agent: AgentDescription, file: h5py.File) -> None:
     file.attrs["format"], file.attrs["version"] = FORMAT, VERSION
     file.attrs["agent"] = agent.name
     _write_agent(file.create_group("agent"), agent)
@@ -103,9 +132,8 @@ def _write(result: TrainingResult, agent: AgentDescription, file: h5py.File) -> 
         _write_arrays(file, result, _Q_ARRAY)
 
 
-def load_result(path: str | Path, agents: Sequence[type] = ()) -> TrainingResult:
-    """Read a result, as :meth:`TrainingResult.load <rssnav.TrainingResult.load>` describes."""
-    path = Path(path)
+def read_result_file(path: Path, agents: Sequence[type] = ()) -> dict[str, Any]:
+    """Read the fields of a :class:`~rssnav.TrainingResult` by name; see its ``load``."""
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such training result")
     try:
@@ -172,7 +200,7 @@ def _read_sequence(dataset: h5py.Dataset) -> NDArray[Any] | tuple[Any, ...]:
     return tuple(values.tolist()) if dataset.attrs["type"] == "tuple" else values
 
 
-def _read(file: h5py.File, agents: Sequence[type]) -> TrainingResult:
+def _read(file: h5py.File, agents: Sequence[type]) -> dict[str, Any]:
     world = _read_world(_group(file, "world"))
     arrays: dict[str, Any] = {
         name: _array(file, _DATASET_NAMES.get(name, name))
@@ -185,14 +213,14 @@ def _read(file: h5py.File, agents: Sequence[type]) -> TrainingResult:
     else:
         agent = restore(_read_agent(_group(file, "agent"), str(file.attrs["agent"])), agents)
         arrays["cell_of_state"] = _array(file, "cell_of_state")
-    return TrainingResult(
-        world=world,
-        agent=agent,
-        learning=QLearning(**_attributes(_group(file, "learning"))),
-        schedule=_read_schedule(_attributes(_group(file, "schedule"))),
-        q=_array(file, "q") if "q" in file else None,
+    return {
+        "world": world,
+        "agent": agent,
+        "learning": QLearning(**_attributes(_group(file, "learning"))),
+        "schedule": _read_schedule(_attributes(_group(file, "schedule"))),
+        "q": _array(file, "q") if "q" in file else None,
         **arrays,
-    )
+    }
 
 
 def _agent_of_version_1(values: dict[str, Any]) -> Agent:

@@ -1,4 +1,4 @@
-"""The result of a training, :class:`TrainingResult`, and its schedule."""
+"""The result of a training, :class:`TrainingResult`."""
 
 from __future__ import annotations
 
@@ -14,45 +14,9 @@ from numpy.typing import NDArray
 from rssnav.agent_description import same_agent
 from rssnav.agents import Agent
 from rssnav.learning_parameters import QLearning
+from rssnav.result_file import read_result_file, write_result_file
+from rssnav.schedule import Schedule
 from rssnav.world import GridWorld
-
-NO_STEP_LIMIT = int(np.iinfo(np.int64).max)
-
-
-@dataclass(frozen=True)
-class Schedule:
-    """How many realisations are trained, and for how long.
-
-    Attributes
-    ----------
-    runs : int
-        Number of realisations.
-    episodes : int
-        Episodes of each; with ``until_converged`` the largest number.
-    seed : int
-        Seed of all of them.
-    until_converged : bool
-        Whether a run stops at convergence.
-    min_episodes : int
-        Episodes that a run flies even when it converges earlier.
-    snapshot_episodes : tuple of int
-        Episodes after which visit counts are stored.
-    max_total_steps : int
-        Steps after which a run starts no further episode.
-    """
-
-    runs: int
-    episodes: int
-    seed: int
-    until_converged: bool
-    min_episodes: int
-    snapshot_episodes: tuple[int, ...]
-    max_total_steps: int = NO_STEP_LIMIT
-
-    @property
-    def guaranteed_episodes(self) -> int:
-        """Episodes that every run flies without a step limit."""
-        return min(self.episodes, self.min_episodes) if self.until_converged else self.episodes
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,9 +112,7 @@ class TrainingResult:
 
     def save(self, path: str | Path) -> None:
         """Write to an HDF5 file, replacing it only once it is complete."""
-        from rssnav.result_file import save_result
-
-        save_result(self, path)
+        write_result_file(self, Path(path))
 
     @staticmethod
     def load(path: str | Path, agents: Sequence[type] = ()) -> TrainingResult:
@@ -172,9 +134,7 @@ class TrainingResult:
         ResultFileError
             When the file is damaged, of another format or version, or does not fit the class.
         """
-        from rssnav.result_file import load_result
-
-        return load_result(path, agents)
+        return TrainingResult(**read_result_file(Path(path), agents))
 
     def check_same_training(
         self, world: GridWorld, agent: Agent, learning: QLearning, schedule: Schedule

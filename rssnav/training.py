@@ -22,7 +22,8 @@ from rssnav.kernels import common
 from rssnav.learning_parameters import QLearning
 from rssnav.learning_rules import LearningProblem
 from rssnav.planning import Path, greedy_path
-from rssnav.results import NO_STEP_LIMIT, Schedule, TrainingResult, padded
+from rssnav.results import TrainingResult, padded
+from rssnav.schedule import NO_STEP_LIMIT, Schedule
 from rssnav.world import GridWorld
 
 Progress = Callable[[int, int], None]

@@ -16,7 +16,8 @@ from rssnav.experiments.paper.data import (
 from rssnav.experiments.progress import Notice
 from rssnav.learning_parameters import QLearning
 from rssnav.result_file import ResultFileError
-from rssnav.results import Schedule, TrainingResult
+from rssnav.results import TrainingResult
+from rssnav.schedule import Schedule
 from rssnav.training import TrainingInterrupted, train
 from rssnav.world import GridWorld
 

@@ -31,7 +31,8 @@ from rssnav.planning import (
     shortest_path,
     value_iteration,
 )
-from rssnav.results import NO_STEP_LIMIT, TrainingResult
+from rssnav.results import TrainingResult
+from rssnav.schedule import NO_STEP_LIMIT
 from rssnav.training import train
 from rssnav.world import GridWorld
 
