@@ -25,7 +25,7 @@ def _falls_with_speed(measure: Measure) -> Claim:
         f"{measure.name.replace('_', '-')}-falls",
         f"Convergence time falls with speed for both agents (measured as {measure.title}).",
         f"Mean {measure.title} to convergence, over the runs that converge. Reproduced where each "
-        "speed takes less than the slower one.",
+        "speed takes less than the next slower one.",
         f"{measure.heading}, slower minus faster",
         lambda data: _falls(data, measure),
     )

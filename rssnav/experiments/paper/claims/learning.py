@@ -125,7 +125,7 @@ CLAIMS = (
         "steps-fall-with-speed",
         "The number of steps falls with speed, as there are fewer states to visit.",
         f"Mean steps of the first {SHOWN_EPISODES} episodes. Reproduced where each speed takes "
-        "fewer than the slower one.",
+        "fewer than the next slower one.",
         "steps, slower minus faster",
         lambda data: list(falls_with_speed(data, SCENARIO, mean_steps(0, SHOWN_EPISODES))),
     ),
