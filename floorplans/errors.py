@@ -69,7 +69,7 @@ class PlanError(ValueError):
 
 
 def format_place(place: Place) -> str:
-    """Write a place the way TOML users do: ``walls[3].openings[0].width_m``."""
+    """Write a place in TOML notation: ``walls[3].openings[0].width_m``."""
     text = ""
     for step in place:
         text += f"[{step}]" if isinstance(step, int) else f".{step}" if text else step

@@ -1,10 +1,10 @@
-"""FloorPlan <-> GeoJSON that holds all of a plan.
+"""FloorPlan <-> GeoJSON that contains a complete plan.
 
 The collection has the foreign member ``rssnav_plan`` with every key of the plan's TOML file that is
 not geometry. The outline, each wall, each opening, the source and the start are features; a
 feature's properties are the keys of its table in the TOML file. Coordinates are longitude and
-latitude where the plan has an origin, and else the plan's own metres, with ``"crs": null`` as
-GeoJSON 2008 has it for coordinates that no one can place on the Earth.
+latitude if the plan has an origin; otherwise they are the plan's metres, with ``"crs": null`` as in
+GeoJSON 2008 for coordinates without a place on the Earth.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from floorplans.toml.writer import dumps
 from floorplans.walls import Wall
 
 MEMBER = "rssnav_plan"
-"""Foreign member of the collection by which a GeoJSON file is known to hold a plan."""
+"""Foreign member of the collection that identifies a GeoJSON file with a plan."""
 
 GEOMETRY_KEYS = ("outline", "holes", "walls", "source", "start")
 
 _MOVED_M = 1e-6
-"""A feature farther than this from its exact points has been moved by another program [m]."""
+"""A feature farther than this from its exact points was moved by another program [m]."""
 
 Json = dict[str, Any]
 Points = NDArray[np.float64]
 
 
 def plan_to_geojson(plan: FloorPlan) -> Json:
-    """Return a plan as a FeatureCollection; `plan_from_geojson` gives an equal plan back."""
+    """Return a plan as a FeatureCollection; `plan_from_geojson` restores an equal plan."""
     data = tomllib.loads(dumps(plan))
     rings = [data["outline"], *data.get("holes", [])]
     features = [_feature(plan, "Polygon", rings, {"kind": "outline"})]
@@ -51,7 +51,7 @@ def plan_to_geojson(plan: FloorPlan) -> Json:
 
 
 def dumps_geojson(plan: FloorPlan) -> str:
-    """Write a plan as GeoJSON text, a line for each feature."""
+    """Write a plan as GeoJSON text, one line per feature."""
     collection = plan_to_geojson(plan)
     features = collection.pop("features")
     head = json.dumps(collection, ensure_ascii=False).removesuffix("}")
@@ -65,14 +65,14 @@ def is_plan(collection: Mapping[str, Any]) -> bool:
 
 
 def plan_from_geojson(collection: Mapping[str, Any], *, origin: str = "<geojson>") -> FloorPlan:
-    """Read a plan that `plan_to_geojson` wrote, perhaps edited since.
+    """Read a plan that `plan_to_geojson` wrote, possibly edited since.
 
     Parameters
     ----------
     collection : mapping
         The FeatureCollection as `json` reads it.
     origin : str
-        What messages call it, such as the name of its file.
+        Name of the text in messages, such as its file's.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def plan_from_geojson(collection: Mapping[str, Any], *, origin: str = "<geojson>
         data = _plan_data(collection)
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         raise PlanError(
-            f"not a plan that was exported as GeoJSON, or edited beyond reading ({error!r}); "
+            f"not a plan exported as GeoJSON, or made unreadable by editing ({error!r}); "
             f"remove its member {MEMBER!r} to read it as any other GeoJSON",
             origin=origin,
         ) from error
@@ -105,7 +105,7 @@ def _wall_features(plan: FloorPlan, wall: Wall, table: Json, index: int) -> list
 
 
 def _feature(plan: FloorPlan, kind: str, points: Any, properties: Json) -> Json:
-    """Make a feature; where its geometry is in degrees, a property keeps the exact metres."""
+    """Create a feature; if its geometry is in degrees, a property keeps the exact metres."""
     if plan.origin is not None:
         properties = {**properties, "points_m": points}
         points = _mapped(points, plan.origin.to_degrees)
@@ -139,7 +139,7 @@ def _plan_data(collection: Mapping[str, Any]) -> Json:
 
 
 def _points(feature: Mapping[str, Any], exact: Any, origin: GeoOrigin | None) -> Any:
-    """Coordinates of a feature [m]: the exact ones, unless its geometry has been moved since."""
+    """Coordinates of a feature [m]: the exact ones, unless its geometry was moved since."""
     coordinates = feature["geometry"]["coordinates"]
     if origin is None:
         return coordinates

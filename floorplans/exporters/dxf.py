@@ -1,8 +1,8 @@
 """FloorPlan -> DXF drawing in metres.
 
-Layers: WALL-MATERIAL holds the outlines of wall bodies, broken at openings as architects draw
-them, with the wall's height as their thickness; DOOR and WINDOW hold a block for each opening; AXIS
-the centre lines. Importing the drawing gives the walls and openings back, but not the heights.
+Layers: WALL-MATERIAL holds the outlines of wall bodies, interrupted at openings, with the wall's
+height as their thickness; DOOR and WINDOW hold a block for each opening; AXIS the centre lines.
+Importing the drawing restores the walls and openings, but not the heights.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def _add_layers(document: Drawing, plan: FloorPlan) -> None:
 
 
 def _add_blocks(document: Drawing) -> None:
-    """Make blocks of 1 m x 1 m that an insert stretches: x along the wall, y across it."""
+    """Create blocks of 1 m x 1 m that an insert scales: x along the wall, y across it."""
     door = document.blocks.new("DOOR")
     door.add_line((0, 0), (0, 1))
     door.add_arc((0, 0), 1, 0, 90)

@@ -1,4 +1,4 @@
-"""Which function renders a plan in which format, and the writing of what it renders."""
+"""The formats a plan can be exported to, and the writing of their files."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from floorplans.plan import FloorPlan
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """What a user may choose about an exported file.
+    """Options of an export.
 
     Attributes
     ----------
     resolution_m : float
         Side of a pixel of an occupancy grid [m].
     slice_height_m : float or None
-        Height above the floor at which an occupancy grid looks at the walls [m]; None is 1 m, or
-        half the storey's height where that is less.
+        Height above the floor of the section that an occupancy grid shows [m]; None is 1 m, or half
+        the storey's height if that is less.
     frequency_hz : float
         At which a plan's own dielectrics are evaluated for programs that want constants [Hz].
     """
@@ -33,7 +33,7 @@ class ExportOptions:
 
 
 Files = Mapping[str, bytes]
-"""Path below the folder of the exported file -> content."""
+"""Path relative to the folder of the exported file -> content."""
 
 Renderer = Callable[[FloorPlan, Path, ExportOptions], Files]
 """Takes the plan, the path of the main file, and the options."""
@@ -41,21 +41,19 @@ Renderer = Callable[[FloorPlan, Path, ExportOptions], Files]
 
 @dataclass(frozen=True)
 class Format:
-    """A kind of file that a plan can be written as.
+    """A file format that a plan can be written in.
 
     Attributes
     ----------
     name : str
-        As one word, for ``--format``.
-    title : str
+        One word, as `export` takes it.
     suffixes : tuple of str
         In lower case, with the dot.
     module, function : str
-        The renderer; its module is loaded when it is needed.
+        The renderer; its module is imported on first use.
     """
 
     name: str
-    title: str
     suffixes: tuple[str, ...]
     module: str
     function: str
@@ -66,16 +64,16 @@ class Format:
 
 
 FORMATS = (
-    Format("geojson", "GeoJSON", (".geojson", ".json"), "geojson", "render_geojson"),
-    Format("dxf", "DXF drawing", (".dxf",), "dxf", "render_dxf"),
-    Format("ros", "ROS map_server map", (".yaml", ".pgm"), "ros_map", "render_ros_map"),
-    Format("glb", "glTF scene", (".glb",), "mesh", "render_glb"),
-    Format("ply", "PLY mesh", (".ply",), "mesh", "render_ply"),
-    Format("stl", "STL mesh", (".stl",), "mesh", "render_stl"),
-    Format("obj", "OBJ mesh", (".obj",), "mesh", "render_obj"),
-    Format("sionna", "Mitsuba scene for Sionna RT", (".xml",), "sionna", "render_sionna"),
+    Format("geojson", (".geojson", ".json"), "geojson", "render_geojson"),
+    Format("dxf", (".dxf",), "dxf", "render_dxf"),
+    Format("ros", (".yaml", ".pgm"), "ros_map", "render_ros_map"),
+    Format("glb", (".glb",), "mesh", "render_glb"),
+    Format("ply", (".ply",), "mesh", "render_ply"),
+    Format("stl", (".stl",), "mesh", "render_stl"),
+    Format("obj", (".obj",), "mesh", "render_obj"),
+    Format("sionna", (".xml",), "sionna", "render_sionna"),
 )
-"""All formats a plan can be written as."""
+"""All formats a plan can be written in."""
 
 
 def export(
@@ -84,13 +82,13 @@ def export(
     format: str | None = None,
     options: ExportOptions | None = None,
 ) -> tuple[Path, ...]:
-    """Write a plan in the format of another program.
+    """Write a plan in another program's format.
 
     Parameters
     ----------
     plan : FloorPlan
     path : str or Path
-        Its ending names the format where `format` does not.
+        Its suffix selects the format unless `format` does.
     format : str, optional
         Name of one of `FORMATS`.
     options : ExportOptions, optional
@@ -116,7 +114,7 @@ def render(plan: FloorPlan, path: Path, format: str | None, options: ExportOptio
 
 
 def format_of(path: Path, name: str | None = None) -> Format:
-    """Find a format by its name, or by the ending of a path; raise `PlanError` if there is none."""
+    """Find a format by its name, or by the suffix of a path; raise `PlanError` if there is none."""
     for kind in FORMATS:
         if kind.name == name or (name is None and path.suffix.lower() in kind.suffixes):
             return kind
@@ -124,7 +122,7 @@ def format_of(path: Path, name: str | None = None) -> Format:
         raise PlanError(unknown_name("format", name, tuple(kind.name for kind in FORMATS)))
     known = ", ".join(suffix for kind in FORMATS for suffix in kind.suffixes)
     raise PlanError(
-        f"no format has the ending {path.suffix!r}; known are {known}", origin=str(path)
+        f"no format has the suffix {path.suffix!r}; known are {known}", origin=str(path)
     )
 
 

@@ -10,5 +10,5 @@ from floorplans.plan import FloorPlan
 
 
 def render_geojson(plan: FloorPlan, path: Path, options: ExportOptions) -> Files:
-    """Render a plan as one GeoJSON file; importing it gives an equal plan back."""
+    """Render a plan as one GeoJSON file; importing it restores an equal plan."""
     return {path.name: dumps_geojson(plan).encode()}

@@ -57,7 +57,7 @@ def sheets(plan: FloorPlan) -> Iterator[Sheet]:
 
 
 def render_glb(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
-    """Render a plan as GLB: a node and a material for each kind of sheet, y up as glTF wants it."""
+    """Render a plan as GLB: a node and a material for each kind of sheet, y up as in glTF."""
     scene = trimesh.Scene()
     for sheet in sheets(plan):
         colour = plan.colour_of(sheet.material.name)
@@ -66,7 +66,7 @@ def render_glb(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
 
 
 def render_ply(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
-    """Render a plan as binary PLY: colours, and a `material` a face that the header explains."""
+    """Render a plan as binary PLY: colours, and a `material` per face that the header explains."""
     walls = plan.to_mesh()
     mesh = walls.mesh.copy()
     mesh.face_attributes["material"] = walls.face_material.astype(np.int32)
@@ -80,7 +80,7 @@ def render_ply(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
 
 
 def render_stl(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
-    """Render a plan as STL in text: a solid for each kind of sheet, called by its material."""
+    """Render a plan as STL in text: a solid for each kind of sheet, named after its material."""
     solids: list[str] = []
     for sheet in sheets(plan):
         mesh = _mesh(sheet.triangles)

@@ -19,14 +19,14 @@ from floorplans.walls import solid_intervals
 
 MAX_PIXELS = 100_000_000
 OCCUPIED, UNKNOWN, FREE = 0, 205, 254
-"""Values of pixels, those that map_server's map_saver writes."""
+"""Pixel values, as map_server's map_saver writes them."""
 
 _MARGIN_M = 0.5
 _SLICE_M = 1.0
 
 
 def render_ros_map(plan: FloorPlan, path: Path, options: ExportOptions) -> Files:
-    """Render what a level cut through a plan shows, walls as thick as they are.
+    """Render a horizontal section of a plan, walls with their thickness.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def render_ros_map(plan: FloorPlan, path: Path, options: ExportOptions) -> Files
     Raises
     ------
     PlanError
-        When the resolution or the height is of no use, or the picture would be too large.
+        When the resolution or the height is invalid, or the picture would be too large.
     """
     slice_m = options.slice_height_m
     height_m = min(_SLICE_M, plan.height_m / 2) if slice_m is None else slice_m
@@ -52,7 +52,7 @@ def render_ros_map(plan: FloorPlan, path: Path, options: ExportOptions) -> Files
     if not 0 < options.resolution_m < inf:
         raise PlanError("expected a length above 0 [m]", ("resolution_m",), options.resolution_m)
     values, corner = _pixels(plan, height_m, options.resolution_m)
-    header = f"P5\n# {path.stem}, cut {height_m:g} m above the floor\n"
+    header = f"P5\n# {path.stem}, section {height_m:g} m above the floor\n"
     header += f"{values.shape[1]} {values.shape[0]}\n255\n"
     names = [path.with_suffix(ending).name for ending in (".yaml", ".pgm")]
     contents = [
@@ -66,7 +66,7 @@ def render_ros_map(plan: FloorPlan, path: Path, options: ExportOptions) -> Files
 def _pixels(
     plan: FloorPlan, height_m: float, pixel_m: float
 ) -> tuple[NDArray[np.uint8], tuple[float, float]]:
-    """Return the picture's values (n_y, n_x), lowest row first, and its lower left corner [m]."""
+    """Return the picture's values (n_y, n_x), bottom row first, and its lower left corner [m]."""
     bodies = shapely.union_all(_bodies(plan, height_m, pixel_m))
     x_min, y_min, x_max, y_max = shapely.total_bounds([plan.outline, bodies])
     corner = (float(x_min) - _MARGIN_M, float(y_min) - _MARGIN_M)
@@ -75,7 +75,7 @@ def _pixels(
     if not n_x * n_y <= MAX_PIXELS:
         raise PlanError(
             f"a picture of {n_x:.3g} x {n_y:.3g} pixels is larger than {MAX_PIXELS:.3g} pixels; "
-            "take larger pixels",
+            "use larger pixels",
             ("resolution_m",),
             pixel_m,
         )
@@ -89,7 +89,7 @@ def _pixels(
 
 
 def _bodies(plan: FloorPlan, height_m: float, pixel_m: float) -> list[BaseGeometry]:
-    """Solid stretches of walls as thick as they are, or as a pixel's diagonal; corners filled."""
+    """Solid sections of walls, at least as thick as a pixel's diagonal; corners filled."""
     n_ends = Counter(end for wall in plan.walls for end in (wall.start, wall.end))
     bodies: list[BaseGeometry] = []
     for wall in plan.walls:
@@ -106,7 +106,7 @@ def _bodies(plan: FloorPlan, height_m: float, pixel_m: float) -> list[BaseGeomet
 def _covered(
     area: BaseGeometry, x: NDArray[np.float64], y: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Which of the points of a grid lie in an area, (n_y, n_x)."""
+    """Which points of a grid lie in an area, (n_y, n_x)."""
     shapely.prepare(area)
     return np.array([shapely.contains_xy(area, x, row) for row in y], dtype=np.bool_)
 

@@ -1,9 +1,9 @@
-"""A plan as a scene of Mitsuba 3 that Sionna RT reads: one XML file, a PLY mesh a material.
+"""A plan as a Mitsuba 3 scene that Sionna RT reads: an XML file and a PLY mesh per material.
 
-A wall is one sheet whose thickness is its radio material's, as Sionna RT wants it. Materials are
-`itu-radio-material`s, called `mat-itu_concrete` and so on, with the thickness after the name where
-one material comes in several; a plan's own dielectrics are `radio-material`s with their values at
-one frequency.
+A wall is one sheet whose thickness is that of its radio material, as Sionna RT expects. Materials
+are `itu-radio-material`s, named `mat-itu_concrete` and so on, with the thickness appended if a
+material has several; a plan's own dielectrics are `radio-material`s with their values at one
+frequency.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def render_sionna(plan: FloorPlan, path: Path, options: ExportOptions) -> Files:
     Raises
     ------
     PlanError
-        When the plan has a material that Sionna RT cannot be told.
+        When the plan has a material that Sionna RT cannot represent.
     """
     folder = f"{path.stem}_meshes"
     parts = list(sheets(plan))
@@ -57,7 +57,7 @@ def render_sionna(plan: FloorPlan, path: Path, options: ExportOptions) -> Files:
 def _material_names(
     plan: FloorPlan, materials: Sequence[SheetMaterial]
 ) -> dict[SheetMaterial, str]:
-    """Name of each material's bsdf; with its thickness where the name alone would be ambiguous."""
+    """Name of each material's bsdf; with its thickness if the name alone is ambiguous."""
     different = tuple(dict.fromkeys(materials))
     n_thicknesses = Counter(material.name for material in different)
     names: dict[SheetMaterial, str] = {}

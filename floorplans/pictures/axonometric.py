@@ -19,15 +19,15 @@ LIGHT = np.array([0.35, -0.85])
 
 ELEVATION_DEG = 42
 AZIMUTH_DEG = -76
-"""Where the camera stands: above the horizon, and from the x axis anticlockwise [deg]."""
+"""Direction of the camera: above the horizon, and counter-clockwise from the x axis [degrees]."""
 
 FILL = np.array([0.92, 0.8])
-"""Shares of the axes' width and height that the plan may fill; the rest is for legend and text."""
+"""Fractions of the axes' width and height for the plan; the rest is for legend and text."""
 
 ALPHA = 0.72
 GLASS_ALPHA = 0.35
 MARKER_HEIGHT = 1.6
-"""How high the markers of source and start stand, in heights of the ceiling."""
+"""Height of the markers of source and start, in ceiling heights."""
 
 FLOOR = "#f1eee6"
 
@@ -84,7 +84,7 @@ def _shade(plan: FloorPlan, wall: Wall, panel: Panel) -> NDArray[np.float64]:
 
 
 def _draw_markers(plan: FloorPlan, ax: Axes3D) -> None:
-    """Draw source and start as pins that stand out above the walls."""
+    """Draw source and start as pins that extend above the walls."""
     top = MARKER_HEIGHT * plan.height_m
     feet = (plan.source, (*plan.start, 0.0))
     for mark, (x, y, z) in zip(markers(), feet, strict=True):
@@ -113,17 +113,17 @@ def _set_up_camera(plan: FloorPlan, ax: Axes3D) -> None:
     ax.set_axis_off()
     box = (x_max - x_min, y_max - y_min, plan.height_m)
     ax.set_box_aspect(box)
-    ax.set_box_aspect(box, zoom=_fitting_zoom(plan, ax))  # pyright: ignore[reportArgumentType]
+    ax.set_box_aspect(box, zoom=_zoom_to_fit(plan, ax))  # pyright: ignore[reportArgumentType]
 
 
-def _fitting_zoom(plan: FloorPlan, ax: Axes3D) -> float:
+def _zoom_to_fit(plan: FloorPlan, ax: Axes3D) -> float:
     """Return the zoom at which the plan fills the axes' whole rectangle, not only its square."""
     figure = ax.get_figure(root=False)
     assert figure is not None
     rectangle = ax.get_position(original=True).transformed(figure.transSubfigure)
-    room = np.array([rectangle.width, rectangle.height]) / min(rectangle.size)
+    available = np.array([rectangle.width, rectangle.height]) / min(rectangle.size)
     spans = np.ptp(_projected_corners(plan, ax), axis=0) / ax.viewLim.width
-    return float(np.min(FILL * room / spans))
+    return float(np.min(FILL * available / spans))
 
 
 def _projected_corners(plan: FloorPlan, ax: Axes3D) -> NDArray[np.float64]:
@@ -135,7 +135,7 @@ def _projected_corners(plan: FloorPlan, ax: Axes3D) -> NDArray[np.float64]:
 
 
 def _draw_frame_and_legend(plan: FloorPlan, ax: Axes3D) -> None:
-    """Draw the legend below the plan, and an unseen line that tells layouts the plan's extent."""
+    """Draw the legend below the plan, and an invisible line as wide as the plan for layouts."""
     corners = _projected_corners(plan, ax)
     pad = 0.06 * np.ptp(corners[:, 0])
     low, high = corners.min(axis=0) - pad, corners.max(axis=0) + pad

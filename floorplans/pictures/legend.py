@@ -1,4 +1,4 @@
-"""What the pictures of a plan have in common: their marks, and the legend that explains them."""
+"""Markers and legend entries that the pictures of a plan share."""
 
 from collections.abc import Iterator
 
@@ -19,7 +19,7 @@ START = "#1e6fd9"
 
 
 def markers() -> tuple[Line2D, Line2D]:
-    """Return the marks of source and start, without a position."""
+    """Return the markers of source and start, without a position."""
     source = Line2D([], [], marker="*", markersize=15, color=SOURCE, label="source (phone)")
     start = Line2D([], [], marker="o", markersize=8, color=START, label="start")
     for gid, artist in (("source", source), ("start", start)):
@@ -57,7 +57,7 @@ def plan_openings(plan: FloorPlan) -> Iterator[tuple[Wall, Opening]]:
 
 
 def is_low(wall: Wall, plan: FloorPlan) -> bool:
-    """Tell whether a wall ends below the ceiling."""
+    """Whether a wall ends below the ceiling."""
     return wall.height_m < plan.height_m
 
 

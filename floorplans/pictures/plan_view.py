@@ -1,6 +1,6 @@
 """Pictures of a plan: a drawing from above, and a view of its walls in three dimensions.
 
-The drawing from above is cut as architects cut: all openings show, whatever their height. Artists
+The plan view follows architectural practice: all openings show, whatever their height. Artists
 carry a group id ("walls:brick", "openings:door", "source" ...) by which they can be found and
 restyled, and which an SVG keeps.
 """
@@ -33,7 +33,7 @@ from floorplans.plan import FloorPlan
 __all__ = ["draw_plan", "draw_plan_3d", "save_plan_picture"]
 
 MIN_WIDTH = 0.004
-"""Walls are drawn at least this wide, as a share of the plan's longer side."""
+"""Least drawn width of walls, as a fraction of the plan's longer side."""
 
 FLOOR = "#fbfaf7"
 
@@ -96,10 +96,10 @@ def _draw_floor(plan: FloorPlan, ax: Axes) -> None:
 
 def _draw_walls(plan: FloorPlan, ax: Axes, strips: WallStrips) -> None:
     """Draw wall strips by material: walls below the ceiling under the others, thick over thin."""
-    by_look: defaultdict[tuple[bool, str], Quads] = defaultdict(list)
+    by_style: defaultdict[tuple[bool, str], Quads] = defaultdict(list)
     for wall in sorted(plan.walls, key=lambda wall: wall.thickness_m):
-        by_look[is_low(wall, plan), wall.material] += strips.strips(wall)
-    for rank, ((low, material), quads) in enumerate(by_look.items()):
+        by_style[is_low(wall, plan), wall.material] += strips.strips(wall)
+    for rank, ((low, material), quads) in enumerate(by_style.items()):
         colour = plan.colour_of(material)
         collection = PolyCollection(
             quads,
@@ -145,7 +145,7 @@ def _draw_markers(plan: FloorPlan, ax: Axes) -> None:
 
 
 def _draw_scale_bar(plan: FloorPlan, ax: Axes) -> None:
-    """Draw a bar of a round length, half dark and half light, above the plan's right corner."""
+    """Draw a bar of round length, half dark and half light, above the plan's right corner."""
     x_min, y_min, x_max, y_max = plan.bounds
     extent = max(x_max - x_min, y_max - y_min)
     length, thickness, y = _round_length(extent / 5), 0.006 * extent, y_max + 0.03 * extent
@@ -203,6 +203,6 @@ def _set_up_axes(plan: FloorPlan, ax: Axes) -> None:
 
 
 def _ticks(low: float, high: float, extent: float) -> NDArray[np.float64]:
-    """Round numbers from `low` to `high` [m], equally far apart on both axes."""
+    """Round numbers from `low` to `high` [m], with the same spacing on both axes."""
     step = _round_length(extent / 5)
     return step * np.arange(ceil(low / step), floor(high / step) + 1, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Shapes of walls and openings seen from above, as arrays of points (n, 2) [m]."""
+"""Shapes of walls and openings in the plan view, as arrays of points (n, 2) [m]."""
 
 from collections import defaultdict
 from math import pi
@@ -19,7 +19,7 @@ DOUBLE_DOOR_M = 1.4
 
 
 def strip(wall: Wall, s_min: float, s_max: float, width_m: float) -> Shape:
-    """Four corners, in turn, of a strip of a width around a stretch of a wall's centre line."""
+    """Four corners, in order, of a strip around a section of a wall's centre line."""
     along, across = _directions(wall)
     ends = np.array(wall.start) + np.outer((s_min, s_max), along)
     half = across * width_m / 2
@@ -33,7 +33,7 @@ def strip_edges(wall: Wall, s_min: float, s_max: float, width_m: float) -> list[
 
 
 class WallStrips:
-    """Strips of a plan's walls, cut at the openings, made longer where walls meet in a corner.
+    """Strips of a plan's walls, interrupted at openings, extended where walls meet in a corner.
 
     Parameters
     ----------
@@ -64,15 +64,15 @@ class WallStrips:
         ]
 
     def _cap_m(self, wall: Wall, end: PlanPoint) -> float:
-        """How far a wall reaches beyond its end, to fill the corner with other walls' ends [m]."""
+        """How far a wall extends beyond its end, to fill the corner with other walls' ends [m]."""
         others = [other for other in self._walls_at[end] if other is not wall]
         return max((self.width_m(other) / 2 for other in others), default=0.0)
 
 
 class DoorSwings:
-    """Symbols of a plan's doors: open leaves, and the quarter circles their edges run on.
+    """Symbols of a plan's doors: open leaves, and the quarter circles of their edges.
 
-    A door opens to the side on which the next wall is further away: from a corridor into a room.
+    A door opens to the side where the next wall is farther away: from a corridor into a room.
 
     Parameters
     ----------
@@ -100,17 +100,17 @@ class DoorSwings:
         ]
 
     def _depth(self, point: Shape, side: Shape) -> float:
-        """Distance from a point of a wall to the next wall on one side [m], 0 if there is none."""
+        """Distance from a point of a wall to the next wall on one side [m]; 0 if there is none."""
         ray = LineString([point + 2 * TOLERANCE_M * side, point + self._reach_m * side])
         hits = ray.intersection(self._walls)
         return 0.0 if shapely.is_empty(hits) else Point(point).distance(hits)
 
 
-def leaf_and_arc(hinge: Shape, shut: Shape, ajar: Shape) -> list[Shape]:
-    """Open leaf, and the arc its edge runs on, of a door hinged at a point."""
+def leaf_and_arc(hinge: Shape, closed: Shape, opened: Shape) -> list[Shape]:
+    """Open leaf of a door hinged at a point, and the arc of its edge."""
     angle = np.linspace(0, pi / 2, 24)
-    arc = hinge + np.outer(np.cos(angle), shut) + np.outer(np.sin(angle), ajar)
-    return [np.array([hinge, hinge + ajar]), arc]
+    arc = hinge + np.outer(np.cos(angle), closed) + np.outer(np.sin(angle), opened)
+    return [np.array([hinge, hinge + opened]), arc]
 
 
 def _directions(wall: Wall) -> tuple[Shape, Shape]:

@@ -1,4 +1,4 @@
-"""A plan in three dimensions for viewers: a GLB file, or one page of HTML to turn and zoom.
+"""A plan in three dimensions: a GLB file, or an interactive HTML page.
 
 >>> import floorplans
 >>> from floorplans.pictures.viewer_3d import add_lines, plan_scene, save_scene
@@ -6,8 +6,8 @@
 >>> add_lines(scene, "paths", [[(1, 1, 1), (2, 3, 2)]], "crimson")
 >>> save_scene(scene, "flat.html")  # doctest: +SKIP
 
-A scene is a `trimesh.Scene` with a node a material ("walls:brick"), lying as glTF wants it: y up.
-The page carries three.js with it and works without a network.
+A scene is a `trimesh.Scene` with a node per material ("walls:brick"), y up as in glTF. The page
+embeds three.js and works offline.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from floorplans.plan import FloorPlan
 Y_UP = np.array(
     [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
 )
-"""Turns (x, y, z) with z up into glTF's axes, y up."""
+"""Transforms (x, y, z) with z up to glTF's axes, y up."""
 
 GLASS_OPACITY = 0.35
 FLOOR_COLOUR = "#cfc9ba"
@@ -58,7 +58,7 @@ _PAGE_CHANGES = (
         "tracklight.target.position.copy(controls.target);",
     ),
 )
-"""Even light from all sides, and a lamp that shines where the camera looks."""
+"""Ambient light, and a lamp that follows the camera's view."""
 
 
 def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) -> trimesh.Scene:
@@ -68,9 +68,9 @@ def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) 
     ----------
     plan : FloorPlan
     opacity : float
-        Of walls that are not glass, 0 to 1; below 1 what is behind them shines through.
+        Of walls that are not glass, 0 to 1.
     ceiling : bool
-        Whether to put the lid on.
+        Whether to show the ceiling.
     """
     scene = trimesh.Scene()
     walls = plan.to_mesh()
@@ -78,13 +78,13 @@ def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) 
     names = np.array([material.name for material in walls.materials])[walls.face_material]
     is_wall = np.ptp(triangles[:, :, 2], axis=1) > 0
     for name in dict.fromkeys(names[is_wall].tolist()):
-        share = min(opacity, GLASS_OPACITY) if name == "glass" else opacity
+        alpha = min(opacity, GLASS_OPACITY) if name == "glass" else opacity
         sheet = triangles[is_wall & (names == name)]
-        add_triangles(scene, f"walls:{name}", sheet, plan.colour_of(name), share)
+        add_triangles(scene, f"walls:{name}", sheet, plan.colour_of(name), alpha)
     add_triangles(scene, "floor", slab_triangles(plan.outline, 0.0), FLOOR_COLOUR)
     if ceiling:
-        lid = slab_triangles(plan.outline, plan.height_m)
-        add_triangles(scene, "ceiling", lid, plan.colour_of(plan.ceiling_material), 0.5)
+        slab = slab_triangles(plan.outline, plan.height_m)
+        add_triangles(scene, "ceiling", slab, plan.colour_of(plan.ceiling_material), 0.5)
     add_points(scene, "source", [plan.source], SOURCE)
     add_points(scene, "start", [(*plan.start, MARKER_RADIUS_M)], START)
     _set_camera(scene)
@@ -94,13 +94,13 @@ def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) 
 def add_triangles(
     scene: trimesh.Scene, name: str, triangles: Triangles, colour: ColorType, opacity: float = 1.0
 ) -> None:
-    """Add a sheet that is seen from both sides.
+    """Add a double-sided sheet.
 
     Parameters
     ----------
     scene : trimesh.Scene
     name : str
-        Of the node and of its material; a viewer shows it.
+        Of the node and of its material, shown by viewers.
     triangles : (n, 3, 3) array
         Triangle, corner, (x, y, z) [m], z up.
     colour : colour of matplotlib
@@ -130,7 +130,7 @@ def add_lines(
         Of the node.
     lines : sequence of (n_i, 3) arrays
         Vertices (x, y, z) of each line [m], z up.
-    colours : colour of matplotlib, or one a line
+    colours : colour of matplotlib, or one per line
     radius_m : float
         Of the tubes [m].
     """
@@ -156,7 +156,7 @@ def add_points(
     colour: ColorType,
     radius_m: float = MARKER_RADIUS_M,
 ) -> None:
-    """Add balls, one at each point (x, y, z) [m]."""
+    """Add a ball at each point (x, y, z) [m]."""
     if not len(points):
         return
     ball = trimesh.creation.icosphere(subdivisions=2, radius=radius_m).triangles
@@ -165,7 +165,7 @@ def add_points(
 
 
 class ColourBar(NamedTuple):
-    """What colours of lines mean: from one end of a bar to the other.
+    """Legend of line colours.
 
     Attributes
     ----------
@@ -183,7 +183,7 @@ class ColourBar(NamedTuple):
     label: str
 
     def html(self) -> str:
-        """Bar and texts in the lower left corner of a page."""
+        """HTML of the bar and its texts in the lower left corner of a page."""
         rgb = [f"rgb({r:.0f},{g:.0f},{b:.0f})" for r, g, b, _ in 255 * to_rgba_array(self.colours)]
         bar = f"height:12px;background:linear-gradient(to right,{','.join(rgb)})"
         ends = f"<span>{escape(self.low)}</span><span>{escape(self.high)}</span>"
@@ -195,7 +195,7 @@ class ColourBar(NamedTuple):
 
 
 def scene_html(scene: trimesh.Scene, title: str, bar: ColourBar | None = None) -> str:
-    """Return a page that shows the scene: drag to turn, wheel to zoom, right button to move."""
+    """Return a page that shows the scene: drag to rotate, wheel to zoom, right button to pan."""
     page = scene_to_html(scene)
     for old, new in _PAGE_CHANGES:
         page = page.replace(old, new, 1)
@@ -205,7 +205,7 @@ def scene_html(scene: trimesh.Scene, title: str, bar: ColourBar | None = None) -
 
 
 def _key(scene: trimesh.Scene, title: str) -> str:
-    """HTML of the title and of the colours' meaning, over the upper left corner of the page."""
+    """HTML of the title and the colour legend in the upper left corner of the page."""
     rows = [f"<b>{escape(title)}</b>"]
     for name, mesh in scene.geometry.items():
         material = getattr(mesh.visual, "material", None)
@@ -230,7 +230,7 @@ def save_scene(
     title : str, optional
         Of the page; by default the file's name.
     bar : ColourBar, optional
-        What the colours of lines mean, for the page.
+        Legend of line colours, for the page.
 
     Raises
     ------
@@ -287,7 +287,7 @@ def _tubes(segments: NDArray[np.float64], radius_m: float) -> NDArray[np.float64
 
 
 def _set_camera(scene: trimesh.Scene) -> None:
-    """Look down at the middle of the scene from the south, so that all of it is in sight."""
+    """Look down at the middle of the scene from the south, with all of it in view."""
     low, high = scene.bounds
     distance = 0.5 * float(np.linalg.norm(high - low)) / np.tan(np.radians(FIELD_OF_VIEW_DEG / 2))
     scene.set_camera(

@@ -77,6 +77,6 @@ def test_ends_of_a_whole_wall_are_exact() -> None:
 
 
 @pytest.mark.parametrize("height_m", [-0.1, 3.1, float("nan")])
-def test_height_outside_the_storey_is_refused(height_m: float) -> None:
+def test_height_outside_the_storey_is_rejected(height_m: float) -> None:
     with pytest.raises(ValueError, match=r"height_m = .*: expected 0 to 3 \[m\]"):
         box().solid_segments(height_m)

@@ -27,7 +27,7 @@ def test_starter_explains_its_keys() -> None:
 
 
 @pytest.mark.parametrize("size", [(4.9, 9.0, 3.0), (9.0, 1001.0, 3.0), (9.0, 9.0, 2.0)])
-def test_starter_of_no_use_is_refused(size: tuple[float, float, float]) -> None:
+def test_starter_of_invalid_size_is_rejected(size: tuple[float, float, float]) -> None:
     with pytest.raises(ValueError, match="expected"):
         starter_plan("my", *size)
 

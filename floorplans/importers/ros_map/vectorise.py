@@ -118,12 +118,12 @@ def _net(solid: Mask, tolerance_px: float) -> _Net:
     pixels = tuple(_nearest_pixels(solid, pieces))
     wide = [float(thickness[tuple(piece.astype(int).T[::-1])].max()) for piece in pieces]
     net = _Net(corners, number.reshape(-1, 2), pixels, np.array(wide))
-    for share, oblique_share in _CORNERS:
-        net = _contracted(net, share, oblique_share)
+    for fraction, oblique_fraction in _CORNERS:
+        net = _contracted(net, fraction, oblique_fraction)
     return net
 
 
-def _contracted(net: _Net, share: float, oblique_share: float) -> _Net:
+def _contracted(net: _Net, fraction: float, oblique_fraction: float) -> _Net:
     """Merge corners joined by lines shorter than a fraction of their width.
 
     Thinning cuts corners, and bends the line of a thick wall towards a wall that ends on it: the
@@ -131,7 +131,7 @@ def _contracted(net: _Net, share: float, oblique_share: float) -> _Net:
     """
     if not len(net.lines):
         return net
-    spread = np.where(_is_oblique(net), oblique_share, share) * net.width
+    spread = np.where(_is_oblique(net), oblique_fraction, fraction) * net.width
     place = {i: [i] for i in range(len(net.corners))}
     lengths = np.hypot(*net.steps.T)
     for k in np.argsort(lengths, kind="stable").tolist():
@@ -213,9 +213,9 @@ def _main_directions(angles: Floats, lengths: Floats) -> Floats:
     window = np.radians(_WINDOW_DEG)
     while left.sum() > 0 and len(main) < 8:
         off = _turn(angles[None, :] - angles[:, None])
-        shares = (np.abs(off) <= window) @ left
-        best = int(shares.argmax())
-        if main and shares[best] < _LEAST_FRACTION * lengths.sum():
+        lengths_near = (np.abs(off) <= window) @ left
+        best = int(lengths_near.argmax())
+        if main and lengths_near[best] < _LEAST_FRACTION * lengths.sum():
             break
         inside = np.abs(off[best]) <= window
         angle = angles[best] + float(np.average(off[best][inside], weights=left[inside] + 1e-12))

@@ -39,7 +39,7 @@ def test_office_is_beyond_doubt() -> None:
 
 
 @pytest.mark.parametrize("gap", [1e-3, 0.04, 0.13])
-def test_wall_that_almost_meets_is_told_with_its_end(gap) -> None:
+def test_wall_that_almost_meets_is_reported_with_its_end(gap) -> None:
     partition = wall((3.0, 0.0), (3.0, 4.0 - gap), DOOR)
     assert warnings_of(partition) == [("almost meets", (3.0, round(4.0 - gap, 3)))]
 
@@ -52,7 +52,7 @@ def test_corner_that_touches_is_no_gap() -> None:
     assert warnings_of(wall((3.0, 0.0), (3.0, 4.0), DOOR), wall((3.0, 2.2), (6.0, 2.2))) == []
 
 
-def test_wall_drawn_twice_is_told() -> None:
+def test_duplicate_wall_is_reported() -> None:
     pair = wall((3.0, 0.0), (3.0, 4.0), DOOR), wall((3.06, 2.2), (3.06, 3.8))
     kinds = {kind for kind, _ in warnings_of(*pair)}
     assert ("side by side", (3.0, 3.0)) in warnings_of(*pair)
@@ -64,19 +64,19 @@ def test_walls_across_or_far_apart_are_not_side_by_side() -> None:
     assert warnings_of(wall((3.0, 0.0), (3.0, 4.0), DOOR), wall((3.4, 1.0), (3.4, 3.0))) == []
 
 
-def test_slivers_are_told() -> None:
+def test_slivers_are_reported() -> None:
     assert ("sliver", (3.0, 1.0)) in warnings_of(wall((3.0, 1.0), (3.03, 1.0)))
     strip = (wall((3.0, 0.0), (3.0, 4.0), DOOR), wall((3.02, 0.0), (3.02, 4.0), DOOR))
     assert ("sliver", (3.01, 2.0)) in warnings_of(*strip)
 
 
-def test_wall_that_ends_in_a_door_is_told() -> None:
+def test_wall_that_ends_in_a_door_is_reported() -> None:
     partition = wall((3.0, 0.0), (3.0, 4.0), DOOR)
     assert warnings_of(partition, wall((3.0, 1.4), (6.0, 1.4))) == [("wall in opening", (3.0, 1.4))]
     assert warnings_of(partition, wall((3.0, 1.0), (6.0, 1.0))) == []  # at the jamb
 
 
-def test_room_without_a_door_is_told() -> None:
+def test_room_without_a_door_is_reported() -> None:
     def shut(*openings: Opening):
         partition = wall((4.0, 0.0), (4.0, 4.0), *openings)
         return [f.text for f in inspect(PlanFile.of(box((partition,)))) if f.kind == "no door"]
@@ -95,12 +95,12 @@ def test_courtyard_is_no_room() -> None:
     assert "room of 23 m²" in rooms[0].text
 
 
-def test_source_and_start_near_a_wall_are_told() -> None:
+def test_source_and_start_near_a_wall_are_reported() -> None:
     assert warnings_of(source=(0.06, 1.0, 1.5)) == [("source near wall", (0.06, 1.0))]
     assert warnings_of(start=(4.5, 3.85)) == [("start near wall", (4.5, 3.85))]
 
 
-def test_all_errors_are_told_with_their_places_in_the_file() -> None:
+def test_all_errors_are_reported_with_their_places_in_the_file() -> None:
     text = edited("points = [[3, 0], [3, 4]]", "points = [[3, 0], [3, 4.5]]")
     text = text.replace("start = [4.5, 2.5]", "start = [9, 9]")
     found = [f for f in inspect(loads_unchecked(text)) if f.severity == "error"]
@@ -114,13 +114,13 @@ def test_wrong_numbers_hide_what_follows_from_them() -> None:
     assert [f.text[:22] for f in inspect(loads_unchecked(text))] == ["walls[1].thickness_m ="]
 
 
-def test_nothing_to_mend_changes_nothing() -> None:
+def test_nothing_to_repair_changes_nothing() -> None:
     plan = floorplans.load("flat")
     assert repair_plan(plan).changes == ()
     assert repair_plan(plan).plan.walls == plan.walls
 
 
-def test_mended_plan_is_beyond_doubt_and_tells_what_was_done() -> None:
+def test_repaired_plan_has_no_findings_and_lists_its_changes() -> None:
     partition = wall((3.0, 0.03), (3.0, 3.96), DOOR)
     repaired = repair_plan(box((partition,), source=(1.0, 1.0, 1.5)))
     assert warnings_of(*repaired.plan.walls[4:]) == []

@@ -8,7 +8,7 @@ from floorplans.exporters import FORMATS, ExportOptions, export, format_of
 
 
 @pytest.mark.parametrize("kind", FORMATS, ids=lambda kind: kind.name)
-def test_each_format_writes_what_it_tells(kind, tmp_path) -> None:
+def test_each_format_writes_what_it_reports(kind, tmp_path) -> None:
     for suffix in kind.suffixes:
         path = tmp_path / kind.name / f"plan{suffix}"
         files = export(floorplans.load("flat"), path)

@@ -38,7 +38,7 @@ def test_sheets_are_the_mesh() -> None:
     assert "walls brick 300 mm" in {part.name for part in parts}
 
 
-def test_glb_stands_upright_and_names_its_materials(tmp_path) -> None:
+def test_glb_is_y_up_and_names_its_materials(tmp_path) -> None:
     (path,) = export(floorplans.load("flat"), tmp_path / "flat.glb")
     scene = trimesh.load_scene(path)
     low, high = scene.bounds
@@ -119,7 +119,7 @@ def test_sionna_scene_holds_own_dielectrics_at_a_frequency(tmp_path) -> None:
         ),
     ],
 )
-def test_what_sionna_cannot_be_told_is_refused_and_nothing_written(
+def test_what_sionna_cannot_represent_is_rejected_and_nothing_written(
     tmp_path, plan, expected
 ) -> None:
     with pytest.raises(PlanError, match=expected):

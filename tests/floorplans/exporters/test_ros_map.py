@@ -58,7 +58,7 @@ def test_the_cut_is_at_the_height_asked_for(tmp_path) -> None:
         ({"slice_height_m": 9.0}, "expected 0 to 3"),
     ],
 )
-def test_senseless_options_are_refused(options, message: str, tmp_path) -> None:
+def test_invalid_options_are_rejected(options, message: str, tmp_path) -> None:
     with pytest.raises(PlanError, match=message):
         grid_of(box(), tmp_path, **options)
     assert list(tmp_path.iterdir()) == []

@@ -100,25 +100,25 @@ def test_what_the_user_gives_is_not_assumed():
         ({"source": (100.0, 1.0, 1.0)}, "the source is outside the outline"),
     ],
 )
-def test_wrong_options_are_told(options: dict[str, object], said: str):
+def test_wrong_options_are_reported(options: dict[str, object], said: str):
     with pytest.raises(PlanError, match=said):
         made(HALL, **options)
 
 
-def test_walls_that_close_nothing_are_refused():
+def test_walls_that_close_nothing_are_rejected():
     with pytest.raises(PlanError, match="close no region"):
         made(Draft("x", (RawWall((0, 0), (30, 0)), RawWall((0, 20), (30, 20)))))
     with pytest.raises(PlanError, match="no walls"):
         made(Draft("x", ()))
 
 
-def test_a_building_of_kilometres_is_refused():
+def test_a_building_of_kilometres_is_rejected():
     with pytest.raises(PlanError, match="30 km"):
         made(Draft("x", tuple(ring(0, 0, 30_000, 1))))
 
 
 @pytest.mark.parametrize("gap_m", [0.2, 0.9, 1.9, 3.5])
-def test_gaps_in_the_outline_are_closed_and_told(gap_m: float):
+def test_gaps_in_the_outline_are_closed_and_reported(gap_m: float):
     walls = [*ring(0, 0, 12, 8)[1:], RawWall((0, 0), (6, 0), 0.3), RawWall((6 + gap_m, 0), (12, 0))]
     result = made(Draft("x", tuple(walls)))
     assert result.plan.outline.area == pytest.approx(12 * 8)
@@ -133,7 +133,7 @@ def test_gaps_are_closed_past_a_pillar():
     assert plan.outline.area == pytest.approx(12 * 8, abs=1)
 
 
-def test_what_lies_outside_is_dropped_and_told():
+def test_what_lies_outside_is_dropped_and_reported():
     result = made(with_walls(RawWall((30, 20), (31, 20)), RawWall((10, 20), (9, 19))))
     assert result.plan.bounds == (0, 0, 12, 8)
     assert len(result.plan.walls) == 4
@@ -159,7 +159,7 @@ def door(x: float, y: float, width_m: float = 0.9, **more: object) -> RawOpening
     return RawOpening((x, y), width_m, "door", **more)  # type: ignore[arg-type]
 
 
-def test_openings_hang_in_the_wall_they_stand_in():
+def test_openings_are_attached_to_their_walls():
     draft = replace(
         with_walls(RawWall((16, 20), (16, 28))),
         openings=(door(16.2, 24), RawOpening((12, 28.1), 1.2, "window")),
@@ -173,14 +173,14 @@ def test_openings_hang_in_the_wall_they_stand_in():
     assert (window.kind, window.material, window.sill_m) == ("window", "glass", 0.9)
 
 
-def test_a_door_in_the_outline_is_filled_and_told():
+def test_a_door_in_the_outline_is_filled_and_reported():
     result = made(replace(HALL, openings=(door(14, 20),)))
     (opening,) = (o for wall in result.plan.walls for o in wall.openings)
     assert opening.material == "wood"
     assert any("wood" in a.value for a in result.assumed if a.key == "door material")
 
 
-def test_an_opening_in_no_wall_is_dropped_and_told():
+def test_an_opening_in_no_wall_is_dropped_and_reported():
     result = made(replace(HALL, openings=(door(15, 25),)))
     assert [str(change) for change in result.changes] == [
         "(5, 5): door that lies in no wall dropped"
@@ -197,7 +197,7 @@ def test_walls_broken_at_a_door_become_one(direction: tuple[float, float] | None
     assert [o.width_m for o in inner.openings] == pytest.approx([0.9])
 
 
-def test_a_door_beside_a_wall_across_bridges_the_gap_to_it():
+def test_a_door_beside_a_wall_across_closes_the_gap_to_it():
     walls = (RawWall((10, 24), (20.9, 24), 0.1),)
     draft = replace(with_walls(*walls), openings=(door(21.35, 24, direction=(1.0, 0.0)),))
     (inner,) = (wall for wall in made(draft).plan.walls if wall.start[1] == wall.end[1] == 4)
@@ -288,7 +288,7 @@ def test_a_line_without_a_partner_stays_single():
     assert lengths == pytest.approx([2, 5], abs=0.2)
 
 
-def test_faces_set_off_from_each_other_are_bridged_as_deep_as_they_are():
+def test_faces_set_off_from_each_other_are_filled_as_deep_as_they_are():
     area = shapely.union_all([box(-3, 0, -0.5, 0.1), box(0.5, 0.07, 3, 0.17)])
     (filling,) = fill_gaps(area, [RawOpening((0, 0), 1.0, "door", (1.0, 0.0))])
     _, low, _, high = filling.bounds
@@ -320,18 +320,18 @@ def test_a_gap_is_filled_as_deep_as_its_faces(angle: float):
         ((40, 20), [0.9], "m"),
     ],
 )
-def test_doors_tell_the_unit(size: tuple[float, float], doors: list[float], unit: str):
+def test_doors_give_the_unit(size: tuple[float, float], doors: list[float], unit: str):
     assert guess_unit(size, doors) == unit
 
 
-def test_a_unit_that_cannot_be_told_is_asked_for():
+def test_a_unit_that_is_unknown_is_asked_for():
     with pytest.raises(PlanError, match=r"give the unit: m for 15 m x 9 m or ft for 4\.57 m"):
         guess_unit((15, 9), [])
     with pytest.raises(PlanError, match="none would make it a building"):
         guess_unit((1e9, 1e9), [])
 
 
-def test_the_report_tells_layers_assumptions_and_changes():
+def test_the_report_states_layers_assumptions_and_changes():
     layers = (LayerUse("A-WALL", 4, "walls"),)
     result = made(replace(with_walls(RawWall((30, 20), (31, 20))), layers=layers, notes=("so so",)))
     assert "layer A-WALL: 4 objects: walls" in result.report
@@ -349,7 +349,7 @@ def test_the_report_tells_layers_assumptions_and_changes():
         ("plan.ifc", b"  0\nSECTION", "does not begin like a IFC model"),
     ],
 )
-def test_files_of_another_kind_are_refused(name: str, content: bytes, said: str, tmp_path: Path):
+def test_files_of_another_kind_are_rejected(name: str, content: bytes, said: str, tmp_path: Path):
     path = tmp_path / name
     path.write_bytes(content)
     with pytest.raises(PlanError, match=said):

@@ -95,12 +95,12 @@ def test_nested_turned_and_scaled_blocks_are_exploded(tmp_path: Path):
 
 
 @pytest.mark.parametrize(("code", "k"), [(1, INCH), (5, 100.0), (6, 1.0), (2, INCH / 12)])
-def test_the_header_tells_the_unit(code: int, k: float, tmp_path: Path):
+def test_the_header_states_the_unit(code: int, k: float, tmp_path: Path):
     assert_is_the_flat(imported(draw.flat_of_bodies(code, k), tmp_path).plan)
 
 
 @pytest.mark.parametrize("k", [1000.0, 100.0, 1.0, INCH])
-def test_a_missing_unit_is_told_by_building_and_doors(k: float, tmp_path: Path):
+def test_a_missing_unit_is_inferred_from_building_and_doors(k: float, tmp_path: Path):
     result = imported(draw.flat_of_bodies(0, k), tmp_path)
     assert_is_the_flat(result.plan)
     assert any("doors say" in note for note in result.notes)
@@ -116,13 +116,13 @@ def test_a_missing_unit_that_could_be_two_is_asked_for(tmp_path: Path):
     assert assert_size == pytest.approx((0, 0, 7.7, 5.7), abs=0.01)
 
 
-def test_a_building_of_kilometres_is_refused_with_the_unit_that_fits(tmp_path: Path):
+def test_a_building_of_kilometres_is_rejected_with_the_unit_that_fits(tmp_path: Path):
     message = refusal(draw.flat_of_bodies(6, 1000.0), tmp_path)
     assert "8 km x 6 km" in message
     assert "give the unit: mm for 8 m x 6 m" in message
 
 
-def test_doors_inside_are_open_and_those_in_the_outline_are_shut(tmp_path: Path):
+def test_doors_inside_are_open_and_those_in_the_outline_are_closed(tmp_path: Path):
     plan = imported(draw.flat_of_bodies(), tmp_path).plan
     doors = {wall is partition(plan): o.material for wall, o in openings(plan) if o.kind == "door"}
     assert doors == {True: None, False: "wood"}
@@ -142,7 +142,7 @@ def test_double_doors_are_one_opening(tmp_path: Path):
     assert opening.width_m == pytest.approx(1.8, abs=0.01)
 
 
-def test_lines_of_windows_are_openings_in_walls_and_panes_elsewhere(tmp_path: Path):
+def test_lines_of_windows_are_openings_in_walls_and_panes_otherwise(tmp_path: Path):
     doc = draw.new()
     space = doc.modelspace()
     draw.add_rings(space, draw.bodies(), "wall")
@@ -186,7 +186,7 @@ def test_chords_stay_within_the_tolerance(radius: float, tolerance: float):
     assert radius * (1 - cos(radians(step / 2))) <= tolerance
 
 
-def test_furniture_and_text_are_left_out_and_told(tmp_path: Path):
+def test_furniture_and_text_are_left_out_and_reported(tmp_path: Path):
     doc = draw.flat_of_bodies()
     space = doc.modelspace()
     draw.add_rings(space, [draw.rectangle(1, 1, 2, 2)], "A-FURN")
@@ -264,42 +264,42 @@ def test_names_of_layers_in_many_languages(name: str, meaning: Meaning):
         ({"*": "wall:gold"}, "unknown material"),
     ],
 )
-def test_wrong_meanings_are_told(layers: dict[str, str], said: str, tmp_path: Path):
+def test_wrong_meanings_are_reported(layers: dict[str, str], said: str, tmp_path: Path):
     doc = draw.flat_of_bodies()
     draw.add_rings(doc.modelspace(), [draw.rectangle(1, 1, 2, 2)], "x")
     assert said in refusal(doc, tmp_path, layers=layers)
 
 
-def test_an_empty_drawing_is_refused(tmp_path: Path):
+def test_an_empty_drawing_is_rejected(tmp_path: Path):
     assert "the drawing is empty" in refusal(draw.new(), tmp_path)
 
 
-def test_a_drawing_of_text_is_refused(tmp_path: Path):
+def test_a_drawing_of_text_is_rejected(tmp_path: Path):
     doc = draw.new()
     doc.modelspace().add_text("nothing but words", dxfattribs={"layer": "notes"})
     assert "no lines of walls were found" in refusal(doc, tmp_path)
     assert "'notes'" in refusal(doc, tmp_path)
 
 
-def test_walls_that_close_nothing_are_refused(tmp_path: Path):
+def test_walls_that_close_nothing_are_rejected(tmp_path: Path):
     doc = draw.new()
     draw.add_lines(doc.modelspace(), [((0, 0), (30, 0)), ((0, 20), (30, 20))], "wall")
     assert "close no region" in refusal(doc, tmp_path)
 
 
-def test_another_kind_of_file_is_refused(tmp_path: Path):
+def test_another_kind_of_file_is_rejected(tmp_path: Path):
     path = tmp_path / "plan.dxf"
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(100))
     with pytest.raises(PlanError, match="does not begin like a DXF drawing; it looks like a ROS"):
         import_plan(path)
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path):
+def test_a_file_that_is_not_there_is_reported(tmp_path: Path):
     with pytest.raises(PlanError, match="cannot be read"):
         import_plan(tmp_path / "missing.dxf")
 
 
-def test_blocks_that_explode_without_end_are_refused_before_work(tmp_path: Path):
+def test_blocks_that_explode_without_end_are_rejected_before_work(tmp_path: Path):
     doc = draw.flat_of_bodies()
     doc.blocks.new("B0").add_line((0, 0), (1, 0))
     for level in range(1, 30):
@@ -310,12 +310,12 @@ def test_blocks_that_explode_without_end_are_refused_before_work(tmp_path: Path)
     assert "objects, more than 500000; save one storey" in refusal(doc, tmp_path)
 
 
-def test_too_many_objects_are_refused_before_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_too_many_objects_are_rejected_before_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(dxf_drawing, "MAX_RECORDS", 50)
     assert "objects, more than 50" in refusal(draw.flat_of_bodies(), tmp_path)
 
 
-def test_more_lines_than_a_storey_has_are_refused_before_work(
+def test_more_lines_than_a_storey_has_are_rejected_before_work(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr(dxf, "MAX_LINES", 20)
@@ -330,7 +330,7 @@ def test_a_block_within_itself_does_no_harm(tmp_path: Path):
     assert_is_the_flat(imported(doc, tmp_path).plan)
 
 
-def test_a_truncated_file_is_read_as_far_as_it_goes_or_refused(tmp_path: Path):
+def test_a_truncated_file_is_read_as_far_as_it_goes_or_rejected(tmp_path: Path):
     text = draw.save(draw.flat_of_bodies(), tmp_path).read_bytes()
     cut = tmp_path / "cut.dxf"
     cut.write_bytes(text[: len(text) // 2])

@@ -106,7 +106,7 @@ def test_wall_of_faces_is_read_like_others(tmp_path, schema) -> None:
     assert spur.thickness_m == pytest.approx(0.15)
 
 
-def test_written_plan_reads_back_and_tells_what_was_assumed(house_file) -> None:
+def test_written_plan_reads_back_and_states_what_was_assumed(house_file) -> None:
     imported = import_plan(house_file)
     text = imported.toml()
     assert loads(text) == imported.plan
@@ -190,7 +190,7 @@ def test_curtain_wall_without_material_is_glass(tmp_path) -> None:
     ]
 
 
-def test_rooms_with_different_ceilings_are_refused_with_the_reason(tmp_path) -> None:
+def test_rooms_with_different_ceilings_are_rejected_with_the_reason(tmp_path) -> None:
     model = house()
     for top, (low, high) in ((2.42, (0.0, 3.0)), (2.82, (3.0, 8.0))):
         corners = [(low, 0.0), (high, 0.0), (high, 5.0), (low, 5.0)]

@@ -82,7 +82,7 @@ def test_page_loads_nothing_and_escapes_the_title() -> None:
     assert "AmbientLight" in page.rpartition("function init")[2]
 
 
-def test_unknown_suffix_is_refused(tmp_path) -> None:
+def test_unknown_suffix_is_rejected(tmp_path) -> None:
     with pytest.raises(ValueError, match=r"expected a name that ends in \.glb or \.html"):
         save_scene(plan_scene(box()), tmp_path / "box.png")
 

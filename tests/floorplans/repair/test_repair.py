@@ -101,7 +101,7 @@ def test_what_sticks_out_beyond_a_wall_is_cut_off():
 
 
 @pytest.mark.parametrize("offset_m", [0.0, 0.02])
-def test_a_wall_drawn_twice_becomes_one(offset_m: float):
+def test_a_duplicate_wall_becomes_one(offset_m: float):
     repaired = repair_walls([wall((0, 0), (6, 0)), wall((5, offset_m), (1, offset_m))])
     assert repaired.walls == (wall((0, 0), (6, 0)),)
     assert [change.kind for change in repaired.changes] == ["joined"]

@@ -111,18 +111,18 @@ def test_plans_without_own_materials_keep_their_text_and_hash() -> None:
         ('material_edition = "P.2040-9"\n', 'material_edition = "P.2040-9": unknown edition'),
     ],
 )
-def test_wrong_materials_are_refused(table: str, message: str) -> None:
+def test_wrong_materials_are_rejected(table: str, message: str) -> None:
     with pytest.raises(PlanError) as caught:
         floorplans.loads(with_materials(table), origin="plan.toml")
     assert f"plan.toml: {message}" in str(caught.value) or message in str(caught.value)
 
 
-def test_a_thickness_that_is_not_that_of_the_layers_is_refused() -> None:
+def test_a_thickness_that_is_not_that_of_the_layers_is_rejected() -> None:
     with pytest.raises(PlanError, match=r"thickness_m = 0.2: the layers of studs are 0.1 m thick"):
         rewalled(material="studs", thickness_m=0.2)
 
 
-def test_a_wall_whose_sides_differ_is_refused_but_not_a_floor() -> None:
+def test_a_wall_whose_sides_differ_is_rejected_but_not_a_floor() -> None:
     tiled = PlanMaterial(
         "tiled", layers=(MaterialLayer("marble", 0.02), MaterialLayer("concrete", 0.18))
     )

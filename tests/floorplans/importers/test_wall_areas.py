@@ -1,0 +1,47 @@
+"""Wall areas become centre lines with the measured thickness."""
+
+import numpy as np
+import pytest
+import shapely
+from shapely import affinity
+from shapely.geometry import LineString, Point, box
+
+from floorplans.importers.centrelines.areas import walls_of_area
+
+CROSS = [box(0, 0, 10, 0.3), box(0, 0, 0.3, 6), box(9.7, 0, 10, 6), box(0, 5.7, 10, 6)]
+CROSS += [box(4, 0, 4.2, 6), box(0, 3, 10, 3.2)]
+
+
+@pytest.mark.parametrize("angle", [0, 17, 45, 90])
+def test_area_of_wall_becomes_centre_lines_with_the_measured_thickness(angle: float) -> None:
+    area = affinity.rotate(shapely.union_all(CROSS), angle, origin=(0, 0))
+    walls = walls_of_area(area, 0.02)
+    back = [affinity.rotate(LineString([w.start, w.end]), -angle, origin=(0, 0)) for w in walls]
+    ends = sorted(sorted(map(tuple, np.round(line.coords, 3).tolist())) for line in back)
+    assert ends == [
+        [(0.15, 0.15), (0.15, 5.85)],
+        [(0.15, 0.15), (9.85, 0.15)],
+        [(0.15, 3.1), (9.85, 3.1)],
+        [(0.15, 5.85), (9.85, 5.85)],
+        [(4.1, 0.15), (4.1, 5.85)],
+        [(9.85, 0.15), (9.85, 5.85)],
+    ]
+    assert sorted(round(wall.thickness_m, 3) for wall in walls) == [0.2, 0.2, 0.3, 0.3, 0.3, 0.3]
+
+
+def test_a_pillar_is_a_ring_of_half_its_width() -> None:
+    walls = walls_of_area(box(2, 2, 2.5, 2.6), 0.02)
+    assert len(walls) == 4
+    assert {round(wall.thickness_m, 6) for wall in walls} == {0.25}
+    assert shapely.polygonize([LineString([w.start, w.end]) for w in walls]).area == pytest.approx(
+        0.3
+    )
+
+
+def test_a_bent_wall_becomes_chords_within_its_body() -> None:
+    arc = Point(0, 0).buffer(8, quad_segs=24) - Point(0, 0).buffer(7.7, quad_segs=24)
+    walls = walls_of_area(arc & box(0, 0, 9, 9), 0.02)
+    chords = shapely.union_all([LineString([w.start, w.end]) for w in walls])
+    assert arc.buffer(1e-3).covers(chords)
+    assert chords.length == pytest.approx(7.85 * np.pi / 2, rel=0.03)
+    assert all(wall.thickness_m == pytest.approx(0.3, abs=0.02) for wall in walls)
