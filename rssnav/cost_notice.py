@@ -1,4 +1,4 @@
-"""Saying beforehand that a map will take long."""
+"""Announcing that a map will take long."""
 
 from raytrace import CostEstimate, Grid, Scene, TraceConfig, Transmitter, estimate_cost
 
@@ -18,12 +18,12 @@ def work(scene: Scene, grid: Grid, config: TraceConfig) -> float:
 
 def announcement(
     scene: Scene,
-    source: Transmitter,
+    transmitter: Transmitter,
     grid: Grid,
     config: TraceConfig,
     threads: int | None = None,
 ) -> str | None:
-    """Say what a map will take if that is long, else return None.
+    """Return what a map will take, in words, if that is long; otherwise None.
 
     Raises
     ------
@@ -32,12 +32,12 @@ def announcement(
     """
     if work(scene, grid, config) < MOST_QUICK_WORK:
         return None
-    cost = estimate_cost(scene, source, grid, config, threads=threads)
+    cost = estimate_cost(scene, transmitter, grid, config, threads=threads)
     return sentence(cost, grid) if cost.seconds > LONG_S else None
 
 
 def sentence(cost: CostEstimate, grid: Grid) -> str:
-    """Say an estimate in words."""
+    """Return an estimate in words."""
     cells = grid.x.size * grid.y.size
     return (
         f"this map will take about {_duration(cost.seconds)}: some {_count(cost.paths)} paths over "

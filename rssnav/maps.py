@@ -33,7 +33,7 @@ FREQUENCY_HZ = 2.4e9
 
 @dataclass(frozen=True)
 class MapRequest:
-    """Everything that decides what a map holds.
+    """Everything that a map depends on.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class MapRequest:
     transmitter
         At the plan's source.
     config
-        How far the tracer goes.
+        Limits of the trace.
     edition
         Of ITU-R P.2040, for the built-in materials.
     """
@@ -56,7 +56,7 @@ class MapRequest:
     edition: str
 
     def difference(self, radio_map: RadioMap) -> str | None:
-        """Say in what respect a map is not the one asked for; None where it is."""
+        """Return how a map differs from the requested one, in words; None where it does not."""
         found = radio_map.provenance
         made_with = {"material_edition": self.edition, "tracer_version": TRACER_VERSION}
         for what, same in (
@@ -127,11 +127,11 @@ def make_map(
     frequency_hz : float
         Carrier frequency [Hz].
     edition : str, optional
-        Of ITU-R P.2040, for the built-in materials; by default the plan's, else the newest.
+        Of ITU-R P.2040, for the built-in materials; by default the plan's, or the newest.
     scene : PlanScene, optional
         The building's scene, to compute several maps with one; built from the plan by default.
     threads : int, optional
-        How many to trace with; all processors by default. The map does not depend on it.
+        Number of threads; all processors by default. The map does not depend on it.
     progress : callable, optional
         Called as ``progress(done, total)`` while tracing.
     notice : callable, optional
@@ -206,7 +206,7 @@ def require_map_for(plan: FloorPlan, radio_map: RadioMap, path: str | Path | Non
 
 
 def _current_map(request: MapRequest, path: Path, notice: Notice | None) -> RadioMap | None:
-    """Return the map in a file if it is the one asked for, None if it is to be computed."""
+    """Return the map in a file if it is the requested one, None if it must be computed."""
     report = notice or _drop_notice
     if not path.exists():
         return None

@@ -2,7 +2,7 @@
 
 
 def describe(error: Exception) -> str:
-    """Say what went wrong, on one line; for the system's errors: which file, and what of it."""
+    """Return an error's message on one line; of an `OSError`, the file and the reason."""
     if isinstance(error, OSError) and error.strerror:
         text = f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     else:

@@ -1,16 +1,13 @@
 """Floor plan -> scene: the tracer's view of a building, for any transmitter in it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from floorplans import FloorPlan, PlanMaterial
 from raytrace import Dielectric, Layer, Layered, Material, Scene, SceneError
 from raytrace.radio.materials import MATERIAL_EDITION, find_material
 
-_BUILDING = (
-    "outline", "walls", "height_m", "floor_material", "floor_thickness_m",
-    "ceiling_material", "ceiling_thickness_m", "materials",
-)  # fmt: skip
-"""Attributes of a plan that its scene depends on, besides the edition of its materials."""
+_NOT_OF_THE_SCENE = {"name", "source", "start", "origin", "material_edition"}
+"""Attributes of a plan that its scene does not depend on; `PlanScene` compares the edition."""
 
 
 def edition_of(plan: FloorPlan, edition: str | None = None) -> str:
@@ -65,12 +62,14 @@ class PlanScene:
     def fits(self, plan: FloorPlan, edition: str | None = None) -> bool:
         """Return whether a plan has the same building: all but name, source, start and origin."""
         return edition_of(plan, edition) == self.scene.material_edition and all(
-            getattr(plan, key) == getattr(self.plan, key) for key in _BUILDING
+            getattr(plan, field.name) == getattr(self.plan, field.name)
+            for field in fields(plan)
+            if field.name not in _NOT_OF_THE_SCENE
         )
 
 
 def _own_materials(plan: FloorPlan, edition: str) -> dict[str, Material]:
-    """A plan's own materials as the tracer knows them."""
+    """Convert a plan's own materials to those of the tracer."""
     dielectrics = {m.name: _dielectric(m) for m in plan.materials if not m.layers}
 
     def layer(name: str, thickness_m: float) -> Layer:

@@ -1,4 +1,4 @@
-"""Where points lie in the plan view, and which edges need a bounce to be met."""
+"""Location of points in the plan view, and the bounces a path needs to meet each edge."""
 
 import numpy as np
 
@@ -26,11 +26,11 @@ def cells_around(view: PlanView, xy: Floats) -> tuple[Ints, Floats]:
     places
         (m, 2) point and cell; a point outside the building is in none, one on a border in all
         around it.
-    share
-        (m,) how much of the point's surroundings is in the cell.
+    weight
+        (m,) fraction of the point's neighbourhood that is in the cell.
     """
-    places, share = np.empty((1024, 2), np.int64), np.empty((1024, 1))
-    ways = np.empty((most_edges(view), 2))
+    places, weight = np.empty((1024, 2), np.int64), np.empty((1024, 1))
+    normals = np.empty((most_edges(view), 2))
     n = 0
     for k in range(len(xy)):
         for c in range(len(view.cell_edges) - 1):
@@ -41,18 +41,18 @@ def cells_around(view: PlanView, xy: Floats) -> tuple[Ints, Floats]:
                     touched = -1
                     break
                 if inside < GRAZING_M:
-                    ways[touched, 0], ways[touched, 1] = nx, ny
+                    normals[touched, 0], normals[touched, 1] = nx, ny
                     touched += 1
             if touched < 0:
                 continue
             if n == len(places):
-                places, share = enlarged(places), enlarged(share)
+                places, weight = enlarged(places), enlarged(weight)
             places[n, 0], places[n, 1] = k, c
-            share[n, 0] = weight_within(ways, touched)
+            weight[n, 0] = weight_within(normals, touched)
             n += 1
             if touched == 0:
                 break
-    return resized(places, n), resized(share, n)[:, 0]
+    return resized(places, n), resized(weight, n)[:, 0]
 
 
 @jit()
@@ -70,13 +70,13 @@ def wall_around(view: PlanView, cells: Ints, place: tuple[float, float, float]) 
 
 def targets_in(view: PlanView, xy: Floats, wanted: Bools) -> Targets:
     """Sort points by cell; those outside the building or not wanted are left out."""
-    places, share = cells_around(view, xy)
-    kept = np.flatnonzero(wanted[places[:, 0]] & (share > 0.0))
+    places, weight = cells_around(view, xy)
+    kept = np.flatnonzero(wanted[places[:, 0]] & (weight > 0.0))
     kept = kept[np.argsort(places[kept, 1], kind="stable")]
     per_cell = np.bincount(places[kept, 1], minlength=len(view.cell_edges) - 1)
     number = places[kept, 0]
     x, y = (np.append(column[number], np.zeros(WIDTH)) for column in xy.T)
-    return Targets(np.concatenate([[0], np.cumsum(per_cell)]), number, share[kept], x, y)
+    return Targets(np.concatenate([[0], np.cumsum(per_cell)]), number, weight[kept], x, y)
 
 
 def bounces_needed(
@@ -97,7 +97,7 @@ def bounces_needed(
     -------
     ndarray
         (n_edges, 2): 1 where the band between the heights has no opening to pass, and where it
-        has no wall to be reflected by; else 0.
+        has no wall to be reflected by; otherwise 0.
     """
     if z_high - z_low < 2e-6:
         z_low, z_high = z_low - 1e-6, z_high + 1e-6

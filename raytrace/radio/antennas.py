@@ -17,7 +17,6 @@ from math import isfinite
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from raytrace.arrays import Complexes, Floats
 from raytrace.errors import SceneError
@@ -95,8 +94,8 @@ class HalfWaveDipole:
     def describe(self) -> str:
         """Name and parameters in one line."""
         x, y, z = self.axis
-        way = "vertical" if z == 1.0 else f"along ({x:g}, {y:g}, {z:g})"
-        return f"half-wave dipole, {way}, peak gain {self.peak_gain_db:g} dB"
+        direction = "vertical" if z == 1.0 else f"along ({x:g}, {y:g}, {z:g})"
+        return f"half-wave dipole, {direction}, peak gain {self.peak_gain_db:g} dB"
 
 
 def _dipole_shape(cos_chi: Floats) -> Floats:
@@ -136,8 +135,9 @@ AZIMUTH_STEPS = 512
 def antenna_tables(antenna: Antenna) -> tuple[Complexes, Complexes]:
     """Tabulate an antenna's amplitudes for look-up by bilinear interpolation.
 
-    The grid is regular in the coordinates of `table_coordinates`: two quotients instead of two
-    angles, which cost no trigonometry and have nodes at the zenith, the horizon and the axes.
+    The grid is regular in two quotients instead of two angles, which cost no trigonometry and have
+    nodes at the zenith, the horizon and the axes: sigma / (|sigma| + c), and quarter by quarter
+    |y| / (|x| + |y|) or |x| / (|x| + |y|).
     The error for a half-wave dipole of any axis is below 1e-4 of its peak amplitude.
 
     Returns
@@ -154,28 +154,6 @@ def antenna_tables(antenna: Antenna) -> tuple[Complexes, Complexes]:
     found = antenna.amplitudes(*np.meshgrid(np.sin(elevation), azimuth, indexing="ij"))
     v, h = (np.asarray(part, dtype=np.complex128) for part in found)
     return v, h
-
-
-def table_coordinates(direction: ArrayLike) -> tuple[Floats, Floats]:
-    """Where directions lie on the grid of `antenna_tables`.
-
-    Parameters
-    ----------
-    direction
-        (..., 3) unit vectors (x, y, z).
-
-    Returns
-    -------
-    row, column : ndarray
-        (...,) 0 to ELEVATION_STEPS by sigma / (|sigma| + c), and 0 to AZIMUTH_STEPS quarter by
-        quarter by |y| / (|x| + |y|) or |x| / (|x| + |y|).
-    """
-    x, y, z = np.moveaxis(np.asarray(direction, dtype=np.float64), -1, 0)
-    row = (1.0 + z / (np.abs(z) + np.hypot(x, y))) * (0.5 * ELEVATION_STEPS)
-    part = np.abs(y) / np.maximum(np.abs(x) + np.abs(y), 1e-300)
-    turn = np.where(x >= 0.0, np.where(y >= 0.0, part, 4.0 - part), 0.0)
-    turn = np.where(x < 0.0, np.where(y >= 0.0, 2.0 - part, 2.0 + part), turn)
-    return row, turn * (0.25 * AZIMUTH_STEPS)
 
 
 def is_vertical(antenna: Antenna) -> bool:
@@ -201,17 +179,3 @@ def vertical_amplitude(antenna: Antenna, sine: Floats) -> Floats:
             "the same in all azimuths"
         )
     return np.asarray(antenna.amplitudes(sine, np.zeros_like(sine)).v, dtype=np.float64)
-
-
-def look_up(tables: tuple[Complexes, Complexes], direction: ArrayLike) -> Amplitudes:
-    """Interpolate the tables of an antenna in directions (..., 3), as the kernels do."""
-    row, column = table_coordinates(direction)
-    i = np.minimum(row.astype(np.int64), ELEVATION_STEPS - 1)
-    j = np.minimum(column.astype(np.int64), AZIMUTH_STEPS - 1)
-    down, across = row - i, column - j
-    v, h = (
-        (1.0 - down) * ((1.0 - across) * t[i, j] + across * t[i, j + 1])
-        + down * ((1.0 - across) * t[i + 1, j] + across * t[i + 1, j + 1])
-        for t in tables
-    )
-    return Amplitudes(v, h)

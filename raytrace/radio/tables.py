@@ -1,12 +1,12 @@
-"""The tables that the field kernels look up."""
+"""Lookup tables of the field kernels."""
 
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import fresnel
 
+from raytrace.arrays import Floats
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.utd import TRANSITION_MAX, TRANSITION_STEPS
 from raytrace.radio.antennas import (
@@ -18,8 +18,6 @@ from raytrace.radio.antennas import (
 )
 from raytrace.radio.materials import SLAB_TABLE_STEPS, Slab, slab_tables, transmission_tables
 from raytrace.radio.transmitter import Transmitter
-
-Floats = NDArray[np.float64]
 
 CIS_STEPS = 256
 ANTENNA_STEPS = 8192

@@ -1,4 +1,4 @@
-"""Errors as people meet them: one line on standard error and an exit code, no traceback."""
+"""Errors for users: one line on standard error and an exit code, no traceback."""
 
 import sys
 
@@ -23,7 +23,7 @@ REMEDIES = {
 
 
 def is_anticipated(error: Exception) -> bool:
-    """Tell whether the user, not the program, can put an error right."""
+    """Return whether the user can correct an error, so that it needs no traceback."""
     from floorplans import PlanError
     from raytrace import MapFileError, SceneError
     from rssnav import ResultFileError, WorldError
@@ -33,12 +33,12 @@ def is_anticipated(error: Exception) -> bool:
 
 
 def complain(message: str) -> None:
-    """Write a line to standard error, with the program's name before it."""
+    """Write a line to standard error, prefixed with the program's name."""
     print(f"rssnav: {message}", file=sys.stderr)
 
 
 def with_remedy(error: Exception) -> str:
-    """Say what went wrong, and which command or option helps, on one line."""
+    """Return an error's message on one line, with the command or option that helps."""
     text, remedy = describe(error), getattr(error, "remedy", None)
     if remedy is None:
         return text

@@ -119,7 +119,7 @@ def test_map_of_another_format_version_is_made_again(plan, made) -> None:
     assert RadioMap.load(made).plan_sha256 == plan.sha256
 
 
-@pytest.mark.parametrize("length", [0, 5000, -1])
+@pytest.mark.parametrize("length", [0, 5000, -100])
 def test_truncated_map_is_made_again(plan, made, length) -> None:
     made.write_bytes(made.read_bytes()[:length])
     watch = Watch()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from raytrace import (
     DIPOLE_PEAK_GAIN_DBI,
@@ -20,8 +20,8 @@ from raytrace import (
 from raytrace.radio.antennas import (
     AZIMUTH_STEPS,
     ELEVATION_STEPS,
+    Amplitudes,
     antenna_tables,
-    look_up,
     vertical_amplitude,
 )
 
@@ -39,6 +39,32 @@ directions = st.tuples(parts, parts, parts).filter(lambda v: np.linalg.norm(v) >
 
 def unit(vector: tuple[float, float, float] | Floats) -> Floats:
     return np.asarray(vector) / np.linalg.norm(vector, axis=-1, keepdims=True)
+
+
+def table_coordinates(direction: ArrayLike) -> tuple[Floats, Floats]:
+    """Row and column of directions (..., 3) on the grid of `antenna_tables`."""
+    x, y, z = np.moveaxis(np.asarray(direction, dtype=np.float64), -1, 0)
+    row = (1.0 + z / (np.abs(z) + np.hypot(x, y))) * (0.5 * ELEVATION_STEPS)
+    part = np.abs(y) / np.maximum(np.abs(x) + np.abs(y), 1e-300)
+    turn = np.where(x >= 0.0, np.where(y >= 0.0, part, 4.0 - part), 0.0)
+    turn = np.where(x < 0.0, np.where(y >= 0.0, 2.0 - part, 2.0 + part), turn)
+    return row, turn * (0.25 * AZIMUTH_STEPS)
+
+
+def look_up(
+    tables: tuple[NDArray[np.complex128], NDArray[np.complex128]], direction: ArrayLike
+) -> Amplitudes:
+    """Interpolate the tables of an antenna in directions (..., 3), as the kernels do."""
+    row, column = table_coordinates(direction)
+    i = np.minimum(row.astype(np.int64), ELEVATION_STEPS - 1)
+    j = np.minimum(column.astype(np.int64), AZIMUTH_STEPS - 1)
+    down, across = row - i, column - j
+    v, h = (
+        (1.0 - down) * ((1.0 - across) * t[i, j] + across * t[i, j + 1])
+        + down * ((1.0 - across) * t[i + 1, j] + across * t[i + 1, j + 1])
+        for t in tables
+    )
+    return Amplitudes(v, h)
 
 
 def around_the_sphere(n: int) -> Floats:
