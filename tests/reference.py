@@ -125,7 +125,7 @@ class Facets:
         return np.array(found)
 
     def containing(self, points: Floats) -> Mask:
-        """(n_points, n_triangles) whether a point lies in a triangle, its rim included."""
+        """(n_points, n_triangles) whether a point lies in a triangle, its border included."""
         from_corner = points[:, None, None] - self.triangles
         off = np.abs((from_corner[:, :, 0] * self.normals).sum(axis=2))
         inside = (from_corner * self.inward).sum(axis=3).min(axis=2)
@@ -178,7 +178,7 @@ class Facets:
         return marks[np.concatenate([[True], np.diff(marks) > 1e-8])]
 
     def _wedges(self, start: Floats, end: Floats) -> Iterator[Edge]:
-        """Wide sectors between the triangles that run along a stretch."""
+        """Wide sectors between the triangles that run along an interval."""
         tangent = (end - start) / np.linalg.norm(end - start)
         frame = Edge(start, end, _across(tangent), 0.0, -1, -1)
         middle = 0.5 * (start + end)

@@ -155,17 +155,17 @@ def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
 
 
 def polarisation(directions: Floats) -> Floats:
-    """Unit vectors (n, 3) across rays, as upright as they can be."""
+    """Unit vectors (n, 3) across rays, as close to vertical as they can be."""
     return unit(UP - directions[:, 2, None] * directions)
 
 
 def pattern(antenna: Antenna, directions: Floats) -> Complexes:
     """Field (n, 3) that an antenna sends towards directions (n, 3)."""
-    upright = polarisation(directions)
-    level = np.cross(upright, directions)
+    v = polarisation(directions)
+    h = np.cross(v, directions)
     azimuth = np.arctan2(directions[:, 1], directions[:, 0])
     a = antenna.amplitudes(directions[:, 2], azimuth)
-    return np.asarray(a.v)[:, None] * upright + np.asarray(a.h)[:, None] * level + 0j
+    return np.asarray(a.v)[:, None] * v + np.asarray(a.h)[:, None] * h + 0j
 
 
 def transmitted(facets: Facets, radio: Radio, points: Floats, field: Complexes) -> Complexes:

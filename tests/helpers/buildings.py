@@ -21,7 +21,7 @@ SLABS = (("concrete", 0.2), ("plasterboard", 0.1), ("glass", 0.01), ("ceiling_bo
 
 
 class Hole(NamedTuple):
-    """An opening of a wall: stretch along it and heights [m]; slab of its filling or None."""
+    """An opening of a wall: interval along it and heights [m]; slab of its filling or None."""
 
     near: float
     far: float
@@ -31,7 +31,7 @@ class Hole(NamedTuple):
 
 
 class Sheet(NamedTuple):
-    """An upright rectangle over start - end [m], between two heights [m]."""
+    """A vertical rectangle over start - end [m], between two heights [m]."""
 
     start: Point
     end: Point
@@ -65,11 +65,11 @@ def _columns(
     done = 0.0
     for hole in holes:
         yield Sheet(at(done), at(hole.near), *heights, slab)
-        stretch = at(hole.near), at(hole.far)
-        yield Sheet(*stretch, heights[0], hole.low, slab)
-        yield Sheet(*stretch, hole.high, heights[1], slab)
+        piece = at(hole.near), at(hole.far)
+        yield Sheet(*piece, heights[0], hole.low, slab)
+        yield Sheet(*piece, hole.high, heights[1], slab)
         if hole.filling is not None:
-            yield Sheet(*stretch, hole.low, hole.high, hole.filling)
+            yield Sheet(*piece, hole.low, hole.high, hole.filling)
         done = hole.far
     yield Sheet(at(done), end, *heights, slab)
 

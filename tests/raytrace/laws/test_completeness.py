@@ -119,8 +119,8 @@ def test_a_source_in_a_pillar_lights_the_pillar_alone() -> None:
     hollow = PLANS["pillar in a hollow pillar"]
     receivers = np.array([[3.1, 1.4, 1.2], [3.2, 2.1, 1.2], [1.0, 1.0, 1.2]])
     paths = trace_paths(hollow.scene, Transmitter((3.375, 2.8125, 1.0)), receivers)
-    lit = [len(paths.at(k)) > 0 for k in range(3)]
-    assert lit == [True, False, False]
+    reached = [len(paths.at(k)) > 0 for k in range(3)]
+    assert reached == [True, False, False]
 
 
 JOINTS: dict[str, Sequence[tuple[tuple[float, float], tuple[float, float]]]] = {

@@ -120,7 +120,7 @@ def hall(*inside: Sheet) -> Building:
     return replace(empty, sheets=sheets, slabs=SLABS, floor=VACUUM, ceiling=VACUUM)
 
 
-def upright(slab: int) -> Building:
+def vertical(slab: int) -> Building:
     return hall(*wall((20.0, 0.0), TIP, slab=slab, high=HALL_HEIGHT_M))
 
 
@@ -144,7 +144,7 @@ def total_field(building: Building, source: Floats, receivers: Floats, walls: in
 def jump_db(
     building: Building, source: Floats, middle: Floats, sideways: Floats, walls: int = 0
 ) -> float:
-    """Largest step of the field over a boundary through `middle`, both sides carried on to it."""
+    """Largest step of the field over a boundary through `middle`, both sides extrapolated to it."""
     steps = np.array([1e-6, 1e-5, 1e-4, 1e-3])
     offsets = np.concatenate([side * near * steps for side in (-1, 1) for near in (1, 2, 3)])
     receivers = middle + offsets[:, None] * sideways
@@ -154,8 +154,8 @@ def jump_db(
 
 
 EDGES = {
-    "upright, level rays": (upright, np.array([14.0, 14.0, 5.0]), (20.0, 20.0, 5.0)),
-    "upright, sloped rays": (upright, np.array([14.0, 16.0, 4.0]), (20.0, 20.0, 6.0)),
+    "vertical, horizontal rays": (vertical, np.array([14.0, 14.0, 5.0]), (20.0, 20.0, 5.0)),
+    "vertical, sloped rays": (vertical, np.array([14.0, 16.0, 4.0]), (20.0, 20.0, 6.0)),
     "corner of 270 degrees": (corner, np.array([26.0, 12.0, 4.0]), (20.0, 20.0, 5.0)),
     "lintel": (lintel, np.array([14.0, 20.5, 3.0]), (20.0, 20.0, 6.0)),
     "lintel, skew rays": (lintel, np.array([14.0, 15.5, 4.0]), (20.0, 20.0, 6.0)),
@@ -191,7 +191,7 @@ def test_half_the_field_is_left_on_an_incident_boundary(edge: str) -> None:
     np.testing.assert_allclose(levels, -6.02, atol=0.1)
 
 
-SHEETS = ("upright, level rays", "upright, sloped rays", "lintel", "lintel, skew rays")
+SHEETS = ("vertical, horizontal rays", "vertical, sloped rays", "lintel", "lintel, skew rays")
 
 
 @pytest.mark.parametrize("screen", ["absorbing", "concrete", "plasterboard"])

@@ -2,8 +2,8 @@
 
 The exact field of a point source at a wedge of two perfectly conducting half planes is the sum of
 what geometrical optics gives and an integral over the edge (Svensson, Fred and Vanderkooy 1999,
-after Biot and Tolstoy 1957). It holds for a vertical dipole beside an upright edge, where the
-field is parallel to the edge (soft), and in the plane across a level edge (hard).
+after Biot and Tolstoy 1957). It holds for a vertical dipole beside a vertical edge, where the
+field is parallel to the edge (soft), and in the plane across a horizontal edge (hard).
 """
 
 from typing import NamedTuple
@@ -103,17 +103,17 @@ def polar(points: Floats, face: Floats, across: Floats) -> Polar:
 WEST, EAST, SOUTH, UP = np.array(
     [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]]
 )
-UPRIGHT = {
+VERTICAL = {
     "half plane": (2.0, hall(*screen((20.0, 0.0)))),
     "corner of 270 degrees": (1.5, hall(*screen((20.0, 0.0)), *screen((0.0, 20.0)))),
 }
 
 
 @pytest.mark.parametrize("azimuth_deg", [-70.0, -25.0, 40.0])
-@pytest.mark.parametrize("name", UPRIGHT)
-def test_upright_edges_are_soft(name: str, azimuth_deg: float) -> None:
-    """All round the edge, through lit and shadowed regions and their boundaries."""
-    n, building = UPRIGHT[name]
+@pytest.mark.parametrize("name", VERTICAL)
+def test_vertical_edges_are_soft(name: str, azimuth_deg: float) -> None:
+    """All around the edge, through lit and shadowed regions and their boundaries."""
+    n, building = VERTICAL[name]
     turn = np.radians(azimuth_deg)
     source = EDGE + 9.0 * np.array([np.cos(turn), np.sin(turn), 0.0])
     angle = np.linspace(0.05, n * np.pi - 0.05, 40)

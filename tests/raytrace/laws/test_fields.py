@@ -1,4 +1,4 @@
-"""Every path's complex gain is that of a field vector carried along it, without any table."""
+"""Every path's complex gain is that of a field vector propagated along it, without any table."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ median by 1e-7; near the null, 160 dB under the strongest path counts as nothing
 
 ANTENNAS = {"isotropic": Isotropic(), "dipole": HalfWaveDipole()}
 TILTED = {
-    "level dipole": HalfWaveDipole(axis=(1.0, 0.0, 0.0)),
+    "horizontal dipole": HalfWaveDipole(axis=(1.0, 0.0, 0.0)),
     "slanted dipole": HalfWaveDipole(axis=(0.3, -0.5, 0.8)),
 }
 THROUGH = TraceConfig(max_reflections=2, max_diffractions=0, max_transmissions=2)
@@ -78,7 +78,7 @@ def test_the_coherent_sum_is_that_of_a_field_vector(name: str) -> None:
 
 
 def test_the_rooms_have_every_kind_of_path() -> None:
-    """Upright and level edges, and reflections before, behind, and on both sides of them."""
+    """Vertical and horizontal edges, and reflections before, behind, and on both sides of them."""
     sequences = set()
     heights = set()
     for name in ("door with lintel", "half-height wall"):

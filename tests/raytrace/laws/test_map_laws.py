@@ -103,7 +103,7 @@ def same_maps(one: RadioMap, other: RadioMap) -> bool:
     ids=["moved", "turned", "turned twice and moved", "mirrored"],
 )
 def test_paths_move_with_the_building(matrix: Floats, shift: Floats) -> None:
-    """Sources and receivers lie off every tie."""
+    """No ray between transmitter and receivers grazes an edge."""
     receivers = OFFICE.random_points(5, seed=42)
     moved_source = matrix @ np.array(SOURCE[:2]) + shift
     moved_receivers = receivers.copy()
@@ -112,9 +112,9 @@ def test_paths_move_with_the_building(matrix: Floats, shift: Floats) -> None:
     here = traced(OFFICE, SOURCE, receivers)
     moved = traced(OFFICE.moved(matrix, shift), there, moved_receivers)
     assert len(here) == len(moved)
-    carried = here.vertices.copy()
-    carried[..., :2] = here.vertices[..., :2] @ matrix.T + shift
-    assert_same_paths(as_found(moved), as_found(replace(here, vertices=carried)), 1e-9)
+    moved_vertices = here.vertices.copy()
+    moved_vertices[..., :2] = here.vertices[..., :2] @ matrix.T + shift
+    assert_same_paths(as_found(moved), as_found(replace(here, vertices=moved_vertices)), 1e-9)
     np.testing.assert_allclose(powers(moved, 5), powers(here, 5), rtol=1e-7)
 
 

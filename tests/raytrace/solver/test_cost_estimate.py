@@ -1,4 +1,4 @@
-"""The cost of a map is foretold within a factor of two."""
+"""The cost of a map is estimated within a factor of two."""
 
 from functools import cache
 
@@ -27,7 +27,7 @@ def scene_of(name: str) -> tuple[Scene, Transmitter, tuple[float, float, float, 
 
 
 @pytest.mark.parametrize(("name", "reflections", "diffractions", "cell_size_m"), MAPS)
-def test_paths_are_foretold_within_a_factor_of_two(
+def test_paths_are_estimated_within_a_factor_of_two(
     name: str, reflections: int, diffractions: int, cell_size_m: float
 ) -> None:
     scene, source, bounds = scene_of(name)
@@ -39,7 +39,7 @@ def test_paths_are_foretold_within_a_factor_of_two(
     assert cost.memory_bytes > 0
 
 
-def test_the_foretold_paths_do_not_depend_on_the_clock() -> None:
+def test_the_estimated_paths_do_not_depend_on_the_clock() -> None:
     scene, source, bounds = scene_of("scenario1")
     grid = Grid.over(bounds, 1.0, 1.5)
     one, two = (estimate_cost(scene, source, grid, TraceConfig(3, 1)).paths for _ in range(2))

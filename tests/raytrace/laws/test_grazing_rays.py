@@ -1,4 +1,4 @@
-"""Rays through corners and rims, sources and receivers on portals and walls."""
+"""Rays through corners and horizontal edges; transmitters and receivers on portals and walls."""
 
 from typing import NamedTuple
 
@@ -27,7 +27,7 @@ MOVES = {
 
 
 class Case(NamedTuple):
-    """A plan on a lattice, whose source and receivers lie on many of its lines and diagonals."""
+    """A plan on a lattice; transmitter and receivers lie on many of its lines and diagonals."""
 
     plan: floorplans.FloorPlan
     source: Floats
@@ -36,7 +36,7 @@ class Case(NamedTuple):
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
     def moved(self, matrix: Floats, shift: tuple[float, float]) -> Sums:
-        """Sums at the receivers, plan, source and receivers moved together."""
+        """Sums at the receivers, plan, transmitter and receivers moved together."""
         solid = np.eye(3)
         solid[:2, :2] = matrix
         walls = self.plan.to_mesh()
@@ -61,7 +61,7 @@ def lattice(plan: floorplans.FloorPlan, step: float, z: float) -> Floats:
 def beside_joints(plan: floorplans.FloorPlan) -> Floats:
     """Return a lattice without the joint of brick and glass at (6, 0).
 
-    What a receiver at a joint of two materials hears of a path over a lintel and through a wall may
+    What a receiver at a joint of two materials gets of a path over a lintel and through a wall may
     be reflected by either of them (docs/conventions.md).
     """
     points = lattice(plan, 0.75, 1.0)
@@ -113,5 +113,5 @@ def test_a_map_moves_with_its_plan(case: Case, unmoved: Sums, move: str) -> None
     np.testing.assert_allclose(moved_field, field, rtol=0, atol=1e-9)
 
 
-def test_there_are_ties_in_it(unmoved: Sums) -> None:
+def test_some_rays_graze(unmoved: Sums) -> None:
     assert (unmoved.n_paths % 1.0 > 0.0).any()
