@@ -36,7 +36,7 @@ class Entry(NamedTuple):
 
 
 COMMANDS = {
-    "plan": Entry(("plan",), "Look at floor plans, check them, export them."),
+    "plan": Entry(("plan",), "Show, check, import and export floor plans."),
     "map": Entry(
         ("radio_maps",),
         "Trace the radio map of a plan: RSS in every cell, from all paths of bounded order.",
