@@ -145,7 +145,7 @@ def test_room_behind_a_shut_door_has_no_path(tmp_path) -> None:
 
 
 def test_maps_makes_both_scenarios_once(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr("rssnav.cli.radio_maps.SCENARIOS", ("flat",))
+    monkeypatch.setattr("rssnav.experiments.paper.scenarios.PLANS", ("flat",))
     out = tmp_path / "maps"
     files = done("maps", "--out", out).split()
     assert files == [str(out / "flat.h5"), str(out / "flat.png")]
