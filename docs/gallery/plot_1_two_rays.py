@@ -42,10 +42,10 @@ height_m = 1.5
 receivers = np.column_stack(
     [plan.source[0] + distance_m, np.full(1500, plan.source[1]), np.full(1500, height_m)]
 )
-source = raytrace.Transmitter(plan.source, antenna=raytrace.Isotropic())
+transmitter = raytrace.Transmitter(plan.source, antenna=raytrace.Isotropic())
 paths = raytrace.trace_paths(
     scene_of(plan),
-    source,
+    transmitter,
     receivers,
     raytrace.TraceConfig(1, 0),
     receive_antenna=raytrace.Isotropic(),
@@ -56,11 +56,11 @@ np.add.at(field, paths.receiver, paths.gain)
 # %%
 # The formula: the ground reflects vertical polarisation with the coefficient +1. Both antennas are
 # isotropic along the vertical polarisation of each ray, so no further projection is needed.
-k = 2.0 * np.pi / source.wavelength_m
+k = 2.0 * np.pi / transmitter.wavelength_m
 direct_m = np.hypot(distance_m, plan.source[2] - height_m)
 reflected_m = np.hypot(distance_m, plan.source[2] + height_m)
 two_rays = np.exp(-1j * k * direct_m) / direct_m + np.exp(-1j * k * reflected_m) / reflected_m
-two_rays *= source.wavelength_m / (4.0 * np.pi)
+two_rays *= transmitter.wavelength_m / (4.0 * np.pi)
 
 worst_db = np.max(np.abs(20.0 * np.log10(np.abs(field) / np.abs(two_rays))))
 print(f"maximum difference between tracer and formula: {worst_db:.4f} dB")
@@ -69,7 +69,7 @@ print(f"maximum difference between tracer and formula: {worst_db:.4f} dB")
 figure, ax = plt.subplots(figsize=(COLUMN_IN, 2.6), layout="constrained")
 ax.semilogx(distance_m, 20.0 * np.log10(np.abs(field)), label="tracer")
 ax.semilogx(distance_m, 20.0 * np.log10(np.abs(two_rays)), "k:", label="two-ray formula")
-free_space = source.wavelength_m / (4.0 * np.pi * direct_m)
+free_space = transmitter.wavelength_m / (4.0 * np.pi * direct_m)
 ax.semilogx(distance_m, 20.0 * np.log10(free_space), color="0.6", label="free space")
 ax.set_xlabel("distance [m]")
 ax.set_ylabel("path gain [dB]")

@@ -44,7 +44,7 @@ thickness_m = 0.1
 # Receivers on a line behind the wall, from deep in its shadow into the lit region.
 y = np.linspace(12.0, 28.0, 801)
 receivers = np.column_stack([np.full(y.size, 60.0), y, np.full(y.size, plan.source[2])])
-source = raytrace.Transmitter(plan.source, antenna=raytrace.Isotropic())
+transmitter = raytrace.Transmitter(plan.source, antenna=raytrace.Isotropic())
 scene = scene_of(plan)
 
 
@@ -52,7 +52,7 @@ def field_of(max_diffractions: int) -> np.ndarray:
     """Sum of the paths' fields at each receiver."""
     paths = raytrace.trace_paths(
         scene,
-        source,
+        transmitter,
         receivers,
         raytrace.TraceConfig(0, max_diffractions),
         receive_antenna=raytrace.Isotropic(),
@@ -63,7 +63,7 @@ def field_of(max_diffractions: int) -> np.ndarray:
 
 
 free_m = np.hypot(receivers[:, 0] - plan.source[0], y - plan.source[1])
-free_space = source.wavelength_m / (4.0 * np.pi * free_m)
+free_space = transmitter.wavelength_m / (4.0 * np.pi * free_m)
 with np.errstate(divide="ignore"):
     ray_db, total_db = (20.0 * np.log10(np.abs(field_of(d)) / free_space) for d in (0, 1))
 
@@ -73,7 +73,7 @@ with np.errstate(divide="ignore"):
 before_m, behind_m = 25.0, 30.0
 clearance_m = (y - plan.source[1]) * before_m / (before_m + behind_m)
 nu = -clearance_m * np.sqrt(
-    2.0 * (before_m + behind_m) / (source.wavelength_m * before_m * behind_m)
+    2.0 * (before_m + behind_m) / (transmitter.wavelength_m * before_m * behind_m)
 )
 sine, cosine = fresnel(nu)
 knife_edge_db = 10.0 * np.log10(((0.5 - cosine) ** 2 + (0.5 - sine) ** 2) / 2.0)

@@ -17,9 +17,9 @@ from rssnav.scenes import scene_of
 plt.rcParams.update(STYLE)
 
 plan = floorplans.load("flat")
-source = raytrace.Transmitter(plan.source)
+transmitter = raytrace.Transmitter(plan.source)
 receiver = np.array([[*plan.start, 2.0]])
-paths = raytrace.trace_paths(scene_of(plan), source, receiver)
+paths = raytrace.trace_paths(scene_of(plan), transmitter, receiver)
 
 # %%
 # How much of the power do the strongest paths carry?
@@ -35,7 +35,7 @@ print(f"RMS delay spread: {spread_s * 1e9:.1f} ns")
 
 # %%
 # Paths with and without a diffraction, and the impulse response in a band of 160 MHz.
-power_dbm = source.power_dbm + paths.gain_db
+power_dbm = transmitter.power_dbm + paths.gain_db
 diffracted = (paths.interactions == 2).any(axis=1)
 channel = paths.impulse_response(160e6)
 
@@ -45,7 +45,7 @@ for chosen, colour, label in (
     (diffracted, "#cc79a7", "diffracted once, and reflected"),
 ):
     ax.plot(paths.delay_s[chosen] * 1e9, power_dbm[chosen], ".", ms=2, color=colour, label=label)
-taps_dbm = source.power_dbm + 20.0 * np.log10(np.abs(channel.taps[0]))
+taps_dbm = transmitter.power_dbm + 20.0 * np.log10(np.abs(channel.taps[0]))
 ax.plot(channel.delay_s * 1e9, taps_dbm, "k.-", lw=0.8, ms=4, label="in 160 MHz")
 ax.set_xlabel("delay [ns]")
 ax.set_ylabel("power [dBm]")

@@ -208,7 +208,7 @@ def main() -> None:
 INTRODUCTION = """\
 ## Comparison with other tracers
 
-`make bench-peers` traces the flat and an office of two rooms from their source to {} random
+`make bench-peers` traces the flat and an office of two rooms from their transmitter to {} random
 receivers, with up to three reflections, or two reflections and a diffraction, at 2.4 GHz with
 vertically polarised isotropic antennas. The tracers are rssnav, Sionna RT (CPU, a million rays, no
 transmission) and pyroomacoustics, which has neither diffraction nor fields. Each runs twice in its
