@@ -1,9 +1,9 @@
-"""Agents as plain values: what a result file keeps of an agent of any class.
+"""Agents as plain values: what a result file stores of an agent of any class.
 
 An agent is a dataclass whose fields are numbers, strings, booleans, None, arrays, tuples of
 numbers or strings, or dataclasses of such fields. Its description names each class by its import
-path and lists the fields, so it can be stored and compared. :func:`restore` makes the agent again
-from classes that the caller has: it imports nothing.
+path and lists the fields, so it can be stored and compared. :func:`restore` builds the agent from
+classes that the caller passes; it imports no module.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def _is_plain(values: tuple[object, ...]) -> bool:
 
 
 def restore(description: AgentDescription, classes: Iterable[type]) -> Agent:
-    """Make the agent of a description, from our classes and those given.
+    """Build the agent of a description, from our classes and those given.
 
     Returns
     -------

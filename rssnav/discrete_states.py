@@ -35,7 +35,7 @@ class ExactStates:
 class ToleranceStates:
     """A reading within (s - Th, s + Th) of a known state s is that state; others create one.
 
-    A state keeps the reading that created it. A reading within reach of two states belongs to the
+    A state stores the reading that created it. A reading within reach of two states belongs to the
     nearer one; at equal distance, to the older one. Known states are thus at least Th apart.
 
     Parameters
@@ -103,7 +103,7 @@ class Fluctuation:
     Parameters
     ----------
     sigma_db : float
-        Standard deviation [dB]; 0 makes the readings the map's values.
+        Standard deviation [dB]; with 0 the readings equal the map's values.
     correlation : float
         Correlation of successive readings' fluctuations, in [0, 1).
     """

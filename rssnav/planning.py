@@ -83,8 +83,8 @@ def shortest_path(
     terminal : (S,) bool
         Where a flight may end.
     cost : {"steps", "metres"}
-        What is minimised; the agents pay per step, straight or diagonal alike. Of the flights
-        with the fewest steps the shortest is taken.
+        What is minimised; for the agents a diagonal step costs as much as a straight one. Of the
+        flights with the fewest steps the shortest is taken.
 
     Raises
     ------

@@ -224,7 +224,7 @@ def _read(file: h5py.File, agents: Sequence[type]) -> dict[str, Any]:
 
 
 def _agent_of_version_1(values: dict[str, Any]) -> Agent:
-    """Agent of a file of version 1, which kept its parameters in one flat table."""
+    """Agent of a file of version 1, which stored its parameters in one flat table."""
     if values["kind"] == "location":
         return LocationAgent(values["terminal_distance_m"])
     if values["kind"] != "rss":

@@ -5,7 +5,7 @@ value of the action taken there next (SARSA; Sutton and Barto, Reinforcement Lea
 section 6.4), or one table's value of the action that is best in the other (Double Q-learning; van
 Hasselt 2010). With the first it equals :mod:`rssnav.kernels.q_learning` bit for bit, but is slower.
 
-Double Q-learning keeps its two tables one after the other in ``run.q`` and acts by their sum.
+Double Q-learning stores its two tables one after the other in ``run.q`` and acts by their sum.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from rssnav.learning_rules import LearningProblem, TabularLearner, TemporalDiffe
 from rssnav.training import generator_states
 
 QUICK = QLearning(eta=2e-2, max_steps=60, epsilon_min=0.1)
-READINGS = {
+INTERPRETATIONS = {
     "defaults": QUICK,
     "maximum over all": replace(QUICK, maximum_over="all"),
     "random ties": replace(QUICK, tie_break="random"),
@@ -23,13 +23,13 @@ AGENTS = pytest.mark.parametrize("agent", [RssAgent(), LocationAgent()], ids=["r
 
 
 class TwoTables(Twin):
-    """SARSA or Double Q-learning in plain Python; tables are told apart by the key's first part."""
+    """SARSA or Double Q-learning in plain Python; the first part of a key is the table."""
 
     def ranked(self, state: int) -> list[float]:
         tables = 2 if self.learning.rule == "double_q" else 1
         return [sum(self.value((t, state), a) for t in range(tables)) for a in range(8)]
 
-    def choose(self, cell: int, label: int) -> int:
+    def choose(self, cell: int, state: int) -> int:
         score = self.ranked(cell)
         best = max(score[a] for a in self.counted(cell))
         ties = [a for a in self.counted(cell) if score[a] == best]
@@ -80,7 +80,7 @@ def advance(learner, episodes):
 
 @AGENTS
 @pytest.mark.parametrize("rule", ["sarsa", "double_q"])
-@pytest.mark.parametrize("reading", READINGS.values(), ids=READINGS)
+@pytest.mark.parametrize("reading", INTERPRETATIONS.values(), ids=INTERPRETATIONS)
 def test_the_loop_equals_its_twin(room_world, agent, rule, reading):
     learning = replace(reading, rule=rule)
     problem = LearningProblem.of(room_world, agent, learning)
@@ -96,7 +96,7 @@ def test_the_loop_equals_its_twin(room_world, agent, rule, reading):
 
 
 @AGENTS
-@pytest.mark.parametrize("learning", READINGS.values(), ids=READINGS)
+@pytest.mark.parametrize("learning", INTERPRETATIONS.values(), ids=INTERPRETATIONS)
 def test_with_the_maximum_it_is_the_fast_loop_to_the_last_bit(room_world, agent, learning):
     problem = LearningProblem.of(room_world, agent, learning)
     generators = generator_states(5, 0)

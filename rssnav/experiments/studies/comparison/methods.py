@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.agents import Agent
-from rssnav.baselines import ParticleFilter, RandomWalk, RssAscent, Searcher, search
 from rssnav.decision_process import DecisionProcess
 from rssnav.discrete_states import Fluctuation
 from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS, AgentName, flights
@@ -33,6 +32,7 @@ from rssnav.planning import (
 )
 from rssnav.results import TrainingResult
 from rssnav.schedule import NO_STEP_LIMIT
+from rssnav.searchers import ParticleFilter, RandomWalk, RssAscent, Searcher, search
 from rssnav.training import train
 from rssnav.world import GridWorld
 

@@ -10,11 +10,11 @@ from small_worlds import SmallPlan, room_plan, world_of
 
 from rssnav import Fluctuation
 from rssnav.agents import RssAgent
-from rssnav.baselines import ParticleFilter, RandomWalk, RssAscent, search
 from rssnav.kernels import particle_filter
 from rssnav.kernels.particle_filter import Belief, Chart, Model
 from rssnav.learning_parameters import QLearning
 from rssnav.learning_rules import moves_of
+from rssnav.searchers import ParticleFilter, RandomWalk, RssAscent, search
 from rssnav.training import generator_states
 
 SEARCHERS = pytest.mark.parametrize(

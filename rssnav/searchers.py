@@ -54,7 +54,7 @@ class RssAscent:
     readings : int
         Readings averaged in each cell against fluctuation; each takes a second.
     escape_steps : int
-        Random steps flown from a local maximum; with 0 the flight gives up there.
+        Random steps flown from a local maximum; with 0 the flight ends there.
     """
 
     readings: int = 1
@@ -89,7 +89,7 @@ class ParticleFilter:
     sigma_db : float
         Standard deviation of readings about the model: shadowing, multipath and fluctuation [dB].
     fresh_share : float
-        Share of new hypotheses at each resampling.
+        Fraction of new hypotheses at each resampling.
     steps_to_draw : int
         Steps flown towards a drawn hypothesis before another is drawn.
     """
@@ -230,7 +230,7 @@ Fly = Callable[[Receiver, Flight], bool]
 def _receivers(
     world: GridWorld, fluctuation: Fluctuation, found_dbm: float
 ) -> Callable[[], Receiver]:
-    """Function that makes receivers, which share all but their fluctuation."""
+    """Function that makes receivers that share all but their fluctuation."""
     return lambda: Receiver(
         world.rss_dbm,
         fluctuation.sigma_db,
