@@ -124,7 +124,7 @@ def test_an_rss_agent_needs_a_path_in_every_cell(made) -> None:
     assert "allow more reflections" in line
 
 
-@pytest.mark.parametrize("fraction", [0.0, 0.01, 0.3, 0.9, 0.999])
+@pytest.mark.parametrize("fraction", [0.0, 0.01, 0.3, 0.9, 0.98])
 def test_truncated_map(made, tmp_path, fraction) -> None:
     plan, target = made
     whole = target.read_bytes()
