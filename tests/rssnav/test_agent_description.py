@@ -114,7 +114,7 @@ def test_what_cannot_be_stored_is_named_and_leaves_no_file(room_world, tmp_path)
     with pytest.raises(TypeError, match=r"Gadget\.levels: \[1\.0\] cannot be stored; use"):
         saved(room_world, Gadget(levels=[1.0]), tmp_path / "result.h5")
 
-    class Plain(Gadget.__base__):
+    class Plain:
         name = "plain"
         decision_process = Gadget.decision_process
 
