@@ -8,7 +8,7 @@ StageProgress = Callable[[str, int, int], None]
 """Called as ``progress(stage, done, total)``; a stage is done when ``done == total``."""
 
 Notice = Callable[[str], None]
-"""Called with a sentence for people."""
+"""Called with a sentence for the user."""
 
 
 def ignore(*_: object) -> None:

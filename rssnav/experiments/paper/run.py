@@ -85,8 +85,8 @@ def run_paper(
     threads: int | None = None,
     resume: bool = True,
     plans: Sequence[str | Path] = PLANS,
-    progress: StageProgress = ignore,
-    notice: Notice = ignore,
+    progress: StageProgress | None = None,
+    notice: Notice | None = None,
 ) -> Paper:
     """Run the whole paper, and write everything below one folder.
 
@@ -132,7 +132,7 @@ def run_paper(
     """
     if len(plans) != 2:
         raise ValueError(f"plans: {len(plans)} given; the paper needs two")
-    out = Path(out)
+    out, progress, notice = Path(out), progress or ignore, notice or ignore
     runs = (QUICK_RUNS if quick else RUNS) if runs is None else runs
     record = Record(seed, runs, quick, tuple(str(plan) for plan in plans))
     plan = TrainingPlan(out / "training" / f"{runs}-runs", runs, seed, threads, resume, notice)
@@ -148,8 +148,8 @@ def report_again(
     out: str | Path = "results",
     *,
     threads: int | None = None,
-    progress: StageProgress = ignore,
-    notice: Notice = ignore,
+    progress: StageProgress | None = None,
+    notice: Notice | None = None,
 ) -> Paper:
     """Recompute figures, tables and report from the maps and trainings of an earlier run.
 

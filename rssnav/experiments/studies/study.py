@@ -107,7 +107,7 @@ def run_study(
     quick: bool = False,
     seed: int = 0,
     threads: int | None = None,
-    progress: StageProgress = ignore,
+    progress: StageProgress | None = None,
 ) -> StudyResult:
     """Measure every piece of a study; write its tables and figures below ``out``.
 
@@ -137,7 +137,7 @@ def run_study(
     TrainingInterrupted
         On Ctrl-C while training.
     """
-    out = Path(out)
+    out, progress = Path(out), progress or ignore
     scenarios = load_scenarios(
         PLANS, out / "maps", threads=threads, progress=progress, notice=ignore
     )

@@ -44,7 +44,7 @@ class Alternative:
 
     @property
     def label(self) -> str:
-        """Name for people."""
+        """Text in the figure."""
         return f"{self.parameter}: {self.choice}"
 
     def concerns(self, key: Configuration) -> bool:
