@@ -112,6 +112,13 @@ def slab_triangles(outline: Polygon, z: float) -> Triangles:
     return np.concatenate([plan_view, np.full((*plan_view.shape[:2], 1), z)], axis=2)
 
 
+def mesh_of(triangles: Triangles) -> trimesh.Trimesh:
+    """Mesh of triangles (n, 3, 3) that share no vertex."""
+    vertices = triangles.reshape(-1, 3)
+    faces = np.arange(len(vertices)).reshape(-1, 3)
+    return trimesh.Trimesh(vertices, faces, process=False)
+
+
 def _colours(plan: UncheckedPlan, materials: tuple[SheetMaterial, ...]) -> NDArray[np.uint8]:
     colours = [bytes.fromhex(plan.colour_of(material.name)[1:]) for material in materials]
     return np.array([(*colour, 255) for colour in colours], dtype=np.uint8)

@@ -13,7 +13,7 @@ from shapely.geometry import Polygon
 from floorplans.errors import Place
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import MATERIAL_COLOURS, OWN_COLOUR, Own, PlanMaterial, by_name
-from floorplans.walls import Wall, solid_intervals
+from floorplans.walls import Wall, solid_segments
 
 
 @dataclass(frozen=True)
@@ -70,12 +70,7 @@ class UncheckedPlan:
         """
         if not 0 <= height_m <= self.height_m:
             raise ValueError(f"height_m = {height_m:g}: expected 0 to {self.height_m:g} [m]")
-        segments = [
-            (wall.point_at(low), wall.point_at(high))
-            for wall in self.walls
-            for low, high in solid_intervals(wall, height_m)
-        ]
-        return np.array(segments, dtype=np.float64).reshape(-1, 2, 2)
+        return solid_segments(self.walls, height_m)
 
     def layer_heights(self) -> tuple[float, ...]:
         """One height [m] in each horizontal layer of constant plan view."""

@@ -4,11 +4,17 @@ A wall stands on the floor, on a straight centre line. A point of it has the coo
 distance from its start along the centre line, and z, the height above the floor, both in metres.
 """
 
-from collections.abc import Iterable, Iterator
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import hypot
 from typing import Literal, NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
 
 OpeningKind = Literal["door", "window", "passage"]
 
@@ -51,6 +57,12 @@ class Opening:
     def end_m(self) -> float:
         """Distance from the wall's start to the far side of the opening [m]."""
         return self.offset_m + self.width_m
+
+    def overlaps(self, other: Opening) -> bool:
+        """Whether two openings of a wall have more than an edge in common."""
+        along = min(self.end_m, other.end_m) - max(self.offset_m, other.offset_m)
+        upwards = min(self.head_m, other.head_m) - max(self.sill_m, other.sill_m)
+        return min(along, upwards) > TOLERANCE_M
 
 
 @dataclass(frozen=True)
@@ -150,6 +162,28 @@ def solid_intervals(wall: Wall, height_m: float) -> list[Interval]:
     """
     spans = [(p.s_min, p.s_max) for p in panels(wall) if p.z_min <= height_m <= p.z_max]
     return _union(spans)
+
+
+def solid_segments(walls: Sequence[Wall], height_m: float) -> NDArray[np.float64]:
+    """Plan-view segments in which walls are solid at a height.
+
+    Returns
+    -------
+    (n, 2, 2) float64
+        Segment, end, and (x, y) [m].
+    """
+    segments = [
+        (wall.point_at(low), wall.point_at(high))
+        for wall in walls
+        for low, high in solid_intervals(wall, height_m)
+    ]
+    return np.array(segments, dtype=np.float64).reshape(-1, 2, 2)
+
+
+def centre_lines(walls: Sequence[Wall]) -> NDArray[np.object_]:
+    """Centre lines as shapely lines, (n,)."""
+    ends = np.array([(wall.start, wall.end) for wall in walls], dtype=np.float64)
+    return np.array(shapely.linestrings(ends.reshape(-1, 2, 2)), dtype=np.object_)
 
 
 def closed_intervals(wall: Wall) -> list[Interval]:

@@ -19,7 +19,7 @@ from shapely.geometry import LineString, MultiLineString, Point, Polygon
 from floorplans.checks.plan import building_faults, number_faults
 from floorplans.errors import PlanError, format_place
 from floorplans.unchecked import PlanFile, UncheckedPlan
-from floorplans.walls import TOLERANCE_M, Wall
+from floorplans.walls import TOLERANCE_M, Wall, centre_lines
 from floorplans.walls import Point as PlanPoint
 
 GAP_M = 0.05
@@ -100,7 +100,7 @@ def _error(fault: PlanError, file: PlanFile) -> Finding:
 
 def _warnings(file: PlanFile) -> Iterator[Finding]:
     plan = file.plan
-    lines = np.array([LineString([w.start, w.end]) for w in plan.walls], dtype=np.object_)
+    lines = centre_lines(plan.walls)
     places = (file.place_in_file(("walls", index)) for index in range(len(lines)))
     walls = _Walls(plan.walls, lines, tuple(format_place(place) for place in places))
     yield from _walls_that_almost_meet(walls)
@@ -194,8 +194,7 @@ def _walls_in_openings(walls: _Walls) -> Iterator[Finding]:
 def _slivers_and_closed_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
     """Yield regions too narrow to be rooms, and rooms without a door."""
     separating = [wall for wall in plan.walls if wall.height_m >= min(ROOM_WALL_M, plan.height_m)]
-    lines = [LineString([wall.start, wall.end]) for wall in separating]
-    noded = shapely.union_all(np.array(lines, dtype=np.object_))
+    noded = shapely.union_all(centre_lines(separating))
     doors = [
         Point(wall.point_at(opening.offset_m + opening.width_m / 2))
         for wall in separating

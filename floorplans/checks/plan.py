@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 from math import isfinite
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiLineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.strtree import STRtree
@@ -18,7 +17,7 @@ from floorplans.errors import Place, PlanError
 from floorplans.georeference import check_origin
 from floorplans.materials import check_materials, check_slab
 from floorplans.unchecked import UncheckedPlan
-from floorplans.walls import TOLERANCE_M, Wall, closed_intervals
+from floorplans.walls import TOLERANCE_M, Wall, centre_lines, closed_intervals
 
 
 def check_plan(plan: UncheckedPlan) -> None:
@@ -108,7 +107,7 @@ def _check_outline(outline: Polygon) -> None:
 def _walls_outside(plan: UncheckedPlan) -> Iterator[PlanError]:
     room = plan.outline.buffer(TOLERANCE_M)
     shapely.prepare(room)
-    for index, line in enumerate(_centre_lines(plan.walls)):
+    for index, line in enumerate(centre_lines(plan.walls)):
         if not room.covers(line):
             outside = _longest(line.difference(room))
             yield PlanError(
@@ -120,16 +119,17 @@ def _walls_outside(plan: UncheckedPlan) -> Iterator[PlanError]:
 
 
 def _duplicate_walls(walls: tuple[Wall, ...]) -> Iterator[PlanError]:
-    lines = _centre_lines(walls)
-    for first, second in STRtree(_array(lines)).query(_array(lines), predicate="intersects").T:
+    lines = centre_lines(walls)
+    pairs = STRtree(lines).query(lines, predicate="intersects").T.tolist()
+    for first, second in pairs:
         if first < second:
-            shared = lines[first].intersection(lines[second])
+            shared = shapely.intersection(lines.item(first), lines.item(second))
             if shared.length > TOLERANCE_M:
                 section = _longest(shared)
                 yield PlanError(
                     f"the wall runs along another wall from {_ends_text(section)}; "
                     "one wall is one sheet: remove this section from one of them",
-                    ("walls", int(second)),
+                    ("walls", second),
                     at=_first_point(section),
                 )
 
@@ -138,7 +138,7 @@ def _open_edges(plan: UncheckedPlan) -> Iterator[PlanError]:
     """Yield where no full-height walls without unfilled openings cover the outline."""
     edge = plan.outline.boundary
     full = [wall for wall in plan.walls if wall.height_m > plan.height_m - TOLERANCE_M]
-    near = np.flatnonzero(shapely.dwithin(_array(_centre_lines(full)), edge, 2 * TOLERANCE_M))
+    near = np.flatnonzero(shapely.dwithin(centre_lines(full), edge, 2 * TOLERANCE_M))
     closed = [
         LineString([full[k].point_at(low), full[k].point_at(high)])
         for k in near
@@ -199,14 +199,6 @@ def _check_inside(plan: UncheckedPlan, point: tuple[float, float], key: str, val
 def _in_wall(plan: UncheckedPlan, point: tuple[float, float], height_m: float) -> bool:
     walls = MultiLineString(list(plan.solid_segments(height_m)))
     return Point(point).distance(walls) < TOLERANCE_M
-
-
-def _centre_lines(walls: Sequence[Wall]) -> list[LineString]:
-    return [LineString([wall.start, wall.end]) for wall in walls]
-
-
-def _array(lines: list[LineString]) -> NDArray[np.object_]:
-    return np.array(lines, dtype=np.object_)  # keeps the type of an empty list
 
 
 def _lines(geometry: BaseGeometry) -> list[LineString]:

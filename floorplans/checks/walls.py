@@ -72,7 +72,7 @@ def check_openings(wall: Wall, own: Own, place: Place) -> None:
         _check_extent_upwards(opening, wall.height_m, here)
         _check_filling(opening, wall.thickness_m, own, here)
     for first, second in combinations(range(len(openings)), 2):
-        if _overlap(openings[first], openings[second]):
+        if openings[first].overlaps(openings[second]):
             o = openings[first]
             raise PlanError(
                 f"the opening overlaps openings[{first}], which reaches from {o.offset_m:g} m to "
@@ -148,9 +148,3 @@ def _check_filling(opening: Opening, wall_m: float, own: Own, place: Place) -> N
                 (*place, "thickness_m"),
                 opening.thickness_m,
             )
-
-
-def _overlap(a: Opening, b: Opening) -> bool:
-    along = min(a.end_m, b.end_m) - max(a.offset_m, b.offset_m)
-    upwards = min(a.head_m, b.head_m) - max(a.sill_m, b.sill_m)
-    return min(along, upwards) > TOLERANCE_M

@@ -13,7 +13,7 @@ from trimesh.exchange.ply import export_ply
 from trimesh.exchange.stl import export_stl_ascii
 
 from floorplans.exporters.formats import ExportOptions, Files
-from floorplans.mesh import SheetMaterial, Triangles
+from floorplans.mesh import SheetMaterial, Triangles, mesh_of
 from floorplans.pictures.viewer_3d import add_triangles
 from floorplans.plan import FloorPlan
 
@@ -83,7 +83,7 @@ def render_stl(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
     """Render a plan as STL in text: a solid for each kind of sheet, named after its material."""
     solids: list[str] = []
     for sheet in sheets(plan):
-        mesh = _mesh(sheet.triangles)
+        mesh = mesh_of(sheet.triangles)
         mesh.metadata["name"] = sheet.name.replace(" ", "_")
         solids.append(export_stl_ascii(mesh))
     return {path.name: "\n".join([*solids, ""]).encode()}
@@ -92,9 +92,3 @@ def render_stl(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
 def render_obj(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
     """Render a plan as OBJ, one object in the materials' colours."""
     return {path.name: str(plan.to_mesh().mesh.export(file_type="obj")).encode()}
-
-
-def _mesh(triangles: Triangles) -> trimesh.Trimesh:
-    vertices = triangles.reshape(-1, 3)
-    faces = np.arange(len(vertices)).reshape(-1, 3)
-    return trimesh.Trimesh(vertices, faces, process=False)

@@ -13,14 +13,12 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-import trimesh
 from trimesh.exchange.ply import export_ply
 
 from floorplans.errors import PlanError
 from floorplans.exporters.formats import ExportOptions, Files
 from floorplans.exporters.mesh import Sheet, sheets
-from floorplans.mesh import SheetMaterial
+from floorplans.mesh import SheetMaterial, mesh_of
 from floorplans.plan import FloorPlan
 
 _SCENE_VERSION = "2.1.0"
@@ -106,6 +104,4 @@ def _shape(name: str, file: str, bsdf: str) -> ET.Element:
 
 
 def _ply(sheet: Sheet) -> bytes:
-    vertices = sheet.triangles.reshape(-1, 3)
-    faces = np.arange(len(vertices)).reshape(-1, 3)
-    return export_ply(trimesh.Trimesh(vertices, faces, process=False), vertex_normal=False)
+    return export_ply(mesh_of(sheet.triangles), vertex_normal=False)

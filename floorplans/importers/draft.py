@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from math import hypot, radians, sin
 
-from shapely.geometry import Polygon
+from shapely.geometry import LineString, Polygon
 
 from floorplans.georeference import GeoOrigin
 from floorplans.walls import OpeningKind, Point
@@ -84,6 +85,12 @@ class RawWall:
     thickness_m: float | None = None
     material: str | None = None
     height_m: float | None = None
+
+
+def walls_along(line: LineString) -> list[RawWall]:
+    """Walls of unknown thickness on the straight pieces of a line [m]."""
+    points = [(float(x), float(y)) for x, y in line.coords]
+    return [RawWall(a, b) for a, b in pairwise(points) if a != b]
 
 
 @dataclass(frozen=True)

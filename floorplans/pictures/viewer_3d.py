@@ -27,7 +27,7 @@ from trimesh.viewer.notebook import scene_to_html
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from floorplans.mesh import Triangles, slab_triangles
+from floorplans.mesh import Triangles, mesh_of, slab_triangles
 from floorplans.pictures.legend import SOURCE, START
 from floorplans.plan import FloorPlan
 
@@ -109,7 +109,7 @@ def add_triangles(
     """
     rgba = to_rgba_array(colour)[0] * (1.0, 1.0, 1.0, opacity)
     material = _material(name.rpartition(":")[2], rgba)
-    mesh = _mesh(triangles)
+    mesh = mesh_of(triangles)
     mesh.visual = TextureVisuals(material=material)
     _add(scene, name, mesh)
 
@@ -141,7 +141,7 @@ def add_lines(
     shades = np.broadcast_to(to_rgba_array(colours), (len(points), 4))
     tubes = _tubes(np.concatenate(segments), radius_m)
     owner = np.repeat(np.arange(len(points)), [len(pieces) for pieces in segments])
-    mesh = _mesh(tubes.reshape(-1, 3, 3))
+    mesh = mesh_of(tubes.reshape(-1, 3, 3))
     rgba = (255 * shades[owner]).astype(np.uint8)
     visual = TextureVisuals(material=_material("", np.ones(4)))
     visual.vertex_attributes["color"] = np.repeat(rgba, 3 * tubes.shape[1], axis=0)
@@ -255,12 +255,6 @@ def _material(name: str, rgba: NDArray[np.float64]) -> PBRMaterial:
         metallicFactor=0.0,
         roughnessFactor=0.9,
     )
-
-
-def _mesh(triangles: Triangles) -> trimesh.Trimesh:
-    vertices = triangles.reshape(-1, 3)
-    faces = np.arange(len(vertices)).reshape(-1, 3)
-    return trimesh.Trimesh(vertices, faces, process=False)
 
 
 def _add(scene: trimesh.Scene, name: str, mesh: trimesh.Trimesh) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import hypot, radians, sin
+from math import dist, radians, sin
 
 import shapely
 
@@ -15,9 +15,8 @@ from floorplans.repair.moves import (
     direction,
     moved_wall,
     tidy_point,
-    wall_lines,
 )
-from floorplans.walls import TOLERANCE_M, Interval, Opening, Wall
+from floorplans.walls import TOLERANCE_M, Interval, Opening, Wall, centre_lines
 
 _MAX_SINE = sin(radians(3.0))
 """Sine of the largest angle between collinear walls."""
@@ -70,7 +69,7 @@ def merge_lines(
 
 def _groups(walls: Sequence[Wall], reach_m: float, sideways_fraction: float) -> Iterator[list[int]]:
     """Indices of the walls of each line, the longest wall first."""
-    lines = wall_lines(walls)
+    lines = centre_lines(walls)
     tree = shapely.STRtree(lines)
     thickest = max((wall.thickness_m for wall in walls), default=0.0)
     free = set(range(len(walls)))
@@ -221,8 +220,8 @@ def _same(walls: Sequence[Wall], group: Sequence[Wall]) -> bool:
     """Whether each wall coincides with one of the group and has the same properties."""
 
     def near(a: Wall, b: Wall) -> bool:
-        straight = max(_gap(a.start, b.start), _gap(a.end, b.end))
-        turned = max(_gap(a.start, b.end), _gap(a.end, b.start))
+        straight = max(dist(a.start, b.start), dist(a.end, b.end))
+        turned = max(dist(a.start, b.end), dist(a.end, b.start))
         same_properties = (a.material, a.thickness_m, a.height_m) == (
             b.material,
             b.thickness_m,
@@ -231,7 +230,3 @@ def _same(walls: Sequence[Wall], group: Sequence[Wall]) -> bool:
         return same_properties and min(straight, turned) <= 2 * TOLERANCE_M
 
     return len(walls) == len(group) and all(any(near(a, b) for b in group) for a in walls)
-
-
-def _gap(a: tuple[float, float], b: tuple[float, float]) -> float:
-    return hypot(a[0] - b[0], a[1] - b[1])

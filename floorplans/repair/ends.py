@@ -18,9 +18,8 @@ from floorplans.repair.moves import (
     line_crossing,
     moved_wall,
     tidy_point,
-    wall_lines,
 )
-from floorplans.walls import TOLERANCE_M, Point, Wall
+from floorplans.walls import TOLERANCE_M, Point, Wall, centre_lines
 
 _MIN_SINE = sin(radians(15.0))
 """Sine of the smallest angle at which centre lines are prolonged to where they cross."""
@@ -61,7 +60,7 @@ def _moved_to_walls(
     walls: Sequence[Wall], ends: NDArray[np.float64], reach_m: float
 ) -> NDArray[np.float64]:
     """Ends (n, 2, 2), each moved along its wall to the centre line of the wall it stands in."""
-    lines = wall_lines(walls)
+    lines = centre_lines(walls)
     points = _points(ends.reshape(-1, 2))
     far_m = 1.5 * (reach_m + max(wall.thickness_m for wall in walls) / 2)
     which, near = shapely.STRtree(lines).query(points, predicate="dwithin", distance=far_m)
@@ -84,7 +83,7 @@ def _moved_to_walls(
 def _on_walls(walls: Sequence[Wall], ends: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which ends (n, 2, 2) lie on another wall between its ends, (2 n,)."""
     points = _points(ends.reshape(-1, 2))
-    which, near = shapely.STRtree(wall_lines(walls)).query(
+    which, near = shapely.STRtree(centre_lines(walls)).query(
         points, predicate="dwithin", distance=TOLERANCE_M
     )
     on = np.zeros(points.size, dtype=np.bool_)

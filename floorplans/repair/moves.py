@@ -6,11 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import hypot
 
-import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
+from floorplans.walls import TOLERANCE_M, Opening, Point, Wall, centre_lines
 
 DECIMALS = 10
 """Coordinates are rounded to 1e-10 m: a wall that ends on an oblique one then also ends on it for a
@@ -75,12 +73,6 @@ def along_across(wall: Wall, point: Point) -> tuple[float, float]:
     return (x * ux + y * uy, ux * y - uy * x)
 
 
-def wall_lines(walls: Sequence[Wall]) -> NDArray[np.object_]:
-    """Centre lines as shapely lines, (n,)."""
-    ends = np.array([(wall.start, wall.end) for wall in walls], dtype=np.float64)
-    return np.array(shapely.linestrings(ends.reshape(-1, 2, 2)), dtype=np.object_)
-
-
 def moved_wall(parts: Sequence[Wall], start: Point, end: Point) -> Wall:
     """Create a wall between two points like the first of `parts`, with the openings of all.
 
@@ -91,7 +83,7 @@ def moved_wall(parts: Sequence[Wall], start: Point, end: Point) -> Wall:
     openings: list[Opening] = []
     for part in parts:
         for moved in _moved_openings(part, bare):
-            if not any(_overlap(moved, other) for other in openings):
+            if not any(moved.overlaps(other) for other in openings):
                 openings.append(moved)
     return replace(bare, openings=tuple(sorted(openings, key=lambda o: (o.offset_m, o.sill_m))))
 
@@ -109,14 +101,9 @@ def _moved_openings(part: Wall, bare: Wall) -> Iterable[Opening]:
             yield replace(opening, offset_m=low, width_m=high - low)
 
 
-def _overlap(a: Opening, b: Opening) -> bool:
-    along = min(a.end_m, b.end_m) - max(a.offset_m, b.offset_m)
-    return along > TOLERANCE_M and min(a.head_m, b.head_m) > max(a.sill_m, b.sill_m) + TOLERANCE_M
-
-
 def points_on_walls(walls: Sequence[Wall]) -> list[list[float]]:
     """Where others end on or cross each wall, as distances along it [m]."""
-    lines = wall_lines(walls)
+    lines = centre_lines(walls)
     cuts: list[list[float]] = [[] for _ in walls]
     first, second = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=TOLERANCE_M)
     for i, j in zip(first.tolist(), second.tolist(), strict=True):

@@ -27,9 +27,8 @@ from floorplans.repair.moves import (
     along_across,
     direction,
     tidy_point,
-    wall_lines,
 )
-from floorplans.walls import TOLERANCE_M, Opening, Wall
+from floorplans.walls import TOLERANCE_M, Opening, Wall, centre_lines
 from floorplans.walls import Point as Point2
 
 _BESIDE_M = 0.3
@@ -67,7 +66,7 @@ def close_gaps(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[W
     """
     if not walls:
         return ()
-    tree = shapely.STRtree(wall_lines(walls))
+    tree = shapely.STRtree(centre_lines(walls))
     thickest_m = max(wall.thickness_m for wall in walls)
     new: list[Wall] = []
     for opening in openings:
@@ -160,7 +159,7 @@ def attach_openings(
     -------
     WallsWithOpenings
     """
-    tree = shapely.STRtree(wall_lines(walls))
+    tree = shapely.STRtree(centre_lines(walls))
     thickest_m = max(wall.thickness_m for wall in walls)
     changes: list[Change] = []
     by_wall: list[list[Opening]] = [list(wall.openings) for wall in walls]
@@ -222,12 +221,5 @@ def _add(openings: list[Opening], new: Opening) -> None:
             openings.pop(i)
             _add(openings, replace(old, offset_m=low, width_m=high - low))
             return
-    for old in openings:
-        over = min(old.head_m, new.head_m) - max(old.sill_m, new.sill_m) > TOLERANCE_M
-        if (
-            over
-            and old.offset_m < new.end_m - TOLERANCE_M
-            and new.offset_m < old.end_m - TOLERANCE_M
-        ):
-            return
-    openings.append(new)
+    if not any(new.overlaps(old) for old in openings):
+        openings.append(new)

@@ -14,9 +14,9 @@ from shapely.geometry import MultiPoint, Polygon
 
 from floorplans.errors import PlanError
 from floorplans.importers.assembly.outline_gaps import gap_links, link_lengths
-from floorplans.repair.moves import Change, wall_lines
+from floorplans.repair.moves import Change
 from floorplans.repair.walls import split_at_junctions
-from floorplans.walls import TOLERANCE_M, Wall
+from floorplans.walls import TOLERANCE_M, Wall, centre_lines
 
 _GAPS_M = (0.0, 0.3, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0)
 """Widths up to which gaps in the outline are closed; tried in order until one suffices [m]."""
@@ -70,7 +70,7 @@ def on_edge(walls: Sequence[Wall], outline: Polygon) -> NDArray[np.bool_]:
     """Which walls lie on the outline, (n,)."""
     edge = outline.boundary.buffer(_ON_EDGE_M)
     shapely.prepare(edge)
-    return np.array(shapely.covers(edge, wall_lines(walls)), dtype=np.bool_)
+    return np.array(shapely.covers(edge, centre_lines(walls)), dtype=np.bool_)
 
 
 Link = tuple[tuple[float, float], tuple[float, float]]
@@ -78,7 +78,7 @@ Link = tuple[tuple[float, float], tuple[float, float]]
 
 def _best_region(pieces: Sequence[Wall], given: Polygon | None) -> tuple[Polygon, list[Link]]:
     """Region with most of the walls, and the links that close it, for the least width of gaps."""
-    lines = wall_lines(pieces)
+    lines = centre_lines(pieces)
     total_m = float(shapely.length(lines).sum())
     best: tuple[float, Polygon, list[Link]] | None = None
     links = gap_links(lines, max(_GAPS_M))
@@ -143,7 +143,7 @@ def _length_inside(lines: NDArray[np.object_], region: Polygon) -> float:
 
 def _closing(pieces: Sequence[Wall], links: Sequence[Link]) -> list[Wall]:
     """Walls on links, with the properties of the longest wall at their ends."""
-    tree = shapely.STRtree(wall_lines(pieces))
+    tree = shapely.STRtree(centre_lines(pieces))
     longest = max(pieces, key=lambda wall: wall.length_m)
     closing: list[Wall] = []
     for start, end in links:
@@ -158,7 +158,7 @@ def _inside(pieces: Sequence[Wall], outline: Polygon, changes: list[Change]) -> 
     """Walls inside or on the outline; the others are dropped and recorded."""
     wide = outline.buffer(_ON_EDGE_M)
     shapely.prepare(wide)
-    kept = shapely.covers(wide, wall_lines(pieces))
+    kept = shapely.covers(wide, centre_lines(pieces))
     outside = [wall for wall, stays in zip(pieces, kept, strict=True) if not stays]
     for wall in outside:
         text = f"wall of {wall.length_m:.2f} m outside the outline dropped"

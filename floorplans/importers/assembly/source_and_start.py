@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from shapely.geometry import MultiLineString, Polygon
 
-from floorplans.walls import Wall, solid_intervals
+from floorplans.walls import Wall, solid_segments
 
 CELL_M = 1.0
 FLYING_HEIGHT_M = 2.0
@@ -59,7 +59,7 @@ def choose_source_and_start(
     SourceAndStart
         The start is the centre of a cell.
     """
-    solid = _solid(walls, min(FLYING_HEIGHT_M, height_m / 2))
+    solid = solid_segments(walls, min(FLYING_HEIGHT_M, height_m / 2))
     cells, steps = _cells(outline, solid)
     if not len(cells):
         inside = outline.representative_point()
@@ -80,16 +80,6 @@ def choose_source_and_start(
     return SourceAndStart(
         source, (float(cells[far][0]), float(cells[far][1])), float(distance_m[far])
     )
-
-
-def _solid(walls: Sequence[Wall], height_m: float) -> NDArray[np.float64]:
-    """Segments (n, 2, 2) where walls are solid at a height."""
-    segments = [
-        (wall.point_at(low), wall.point_at(high))
-        for wall in walls
-        for low, high in solid_intervals(wall, height_m)
-    ]
-    return np.array(segments, dtype=np.float64).reshape(-1, 2, 2)
 
 
 def _cells(outline: Polygon, solid: NDArray[np.float64]) -> tuple[NDArray[np.float64], csr_array]:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.importers.centrelines.areas import walls_of_area
-from floorplans.importers.draft import RawWall
+from floorplans.importers.draft import RawWall, walls_along
 
 WALL_GAP_M = 0.8
 """Rooms nearer to each other than this have a wall between them [m]."""
@@ -70,10 +69,5 @@ def _opened(area: BaseGeometry, width_m: float) -> BaseGeometry:
 
 def _straight(lines: BaseGeometry) -> list[RawWall]:
     merged = shapely.get_parts(shapely.line_merge(lines))
-    return [
-        RawWall((a[0], a[1]), (b[0], b[1]))
-        for line in merged
-        if isinstance(line, LineString)
-        for a, b in pairwise(line.coords)
-        if a != b
-    ]
+    chains = [line for line in merged if isinstance(line, LineString)]
+    return [wall for line in chains for wall in walls_along(line)]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any
 
 import shapely
@@ -13,7 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from floorplans.importers.centrelines.areas import box_sides, walls_of_area
 from floorplans.importers.centrelines.rooms import walls_of_rooms
-from floorplans.importers.draft import RawOpening, RawWall
+from floorplans.importers.draft import RawOpening, RawWall, walls_along
 from floorplans.importers.geojson.features import FeatureClass, Kind, number_of
 from floorplans.walls import OpeningKind
 
@@ -129,17 +128,12 @@ def _like(wall: RawWall, p: Placed) -> RawWall:
 
 def _line_walls(p: Placed) -> list[RawWall]:
     lines = [part for part in _parts(p.geometry) if isinstance(part, LineString)]
-    return [_like(wall, p) for line in lines for wall in _straight(line)]
-
-
-def _straight(line: LineString) -> list[RawWall]:
-    points = [(float(x), float(y)) for x, y in line.coords]
-    return [RawWall(a, b) for a, b in pairwise(points) if a != b]
+    return [_like(wall, p) for line in lines for wall in walls_along(line)]
 
 
 def _ring(p: Placed, outline: Polygon) -> list[RawWall]:
     rings = [LineString(ring) for ring in (outline.exterior, *outline.interiors)]
-    return [replace(wall, material=p.what.material) for ring in rings for wall in _straight(ring)]
+    return [replace(wall, material=p.what.material) for ring in rings for wall in walls_along(ring)]
 
 
 def _part_openings(
@@ -149,7 +143,7 @@ def _part_openings(
         width_m = number_of(p.feature, "width_m", "width", "door:width") or OPENING_WIDTH_M[kind]
         return [RawOpening((part.x, part.y), width_m, kind)]
     if isinstance(part, LineString):
-        return [RawOpening.between(wall.start, wall.end, kind) for wall in _straight(part)]
+        return [RawOpening.between(wall.start, wall.end, kind) for wall in walls_along(part)]
     if not isinstance(part, Polygon) or part.area == 0:
         return []
     width_m, length_m = box_sides(part)
