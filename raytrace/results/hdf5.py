@@ -36,6 +36,7 @@ MAX_TEXT_BYTES = 1 << 26
 
 _EXPANSION = 1100
 """No stored byte gives more than so many: deflate reaches 1032."""
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _MARK = b"rssnav sha256 "
 _HASH_BYTES = 32
 _KINDS = {"f": "floating-point numbers", "i": "integers", "u": "integers", "b": "booleans"}
@@ -112,11 +113,20 @@ def open_checked(path: Path) -> Generator["Checked"]:
 def _check_content(content: bytes) -> None:
     """Find damage before the HDF5 library sees it, which can loop for ever in damaged heaps."""
     body, mark, digest = content.rpartition(_MARK)
-    if mark and len(digest) == _HASH_BYTES and hashlib.sha256(body).digest() != digest:
-        raise Hdf5ContentError("the content has changed since it was written")
+    if mark and len(digest) == _HASH_BYTES:
+        if hashlib.sha256(body).digest() != digest:
+            raise Hdf5ContentError("the content has changed since it was written")
+    elif _end_of_hdf5(content) not in (None, len(content)):
+        raise Hdf5ContentError("the end of the file is damaged")
     for found in re.finditer(rb"GCOL\x01", content):
         if not _is_sound_heap(content, found.start()):
             raise Hdf5ContentError("a heap of texts is damaged")
+
+
+def _end_of_hdf5(content: bytes) -> int | None:
+    """End of the file by its superblock of version 2 or 3 (HDF5 specification, II.A)."""
+    known = content.startswith(_SIGNATURE) and content[8:9] in (b"\x02", b"\x03")
+    return struct.unpack_from("<Q", content, 28)[0] if known and len(content) >= 36 else None
 
 
 def _is_sound_heap(content: bytes, at: int) -> bool:

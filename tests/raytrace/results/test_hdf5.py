@@ -136,6 +136,14 @@ def test_a_flipped_bit_anywhere_is_noticed(tmp_path) -> None:
             read(path)
 
 
+@pytest.mark.parametrize("lost", [1, 20, 45, 50])
+def test_a_file_that_lost_its_end_is_refused(tmp_path, lost) -> None:
+    path = tmp_path / "file.h5"
+    path.write_bytes(hdf5_bytes(fill)[:-lost])
+    with pytest.raises(Hdf5ContentError):
+        read(path)
+
+
 def test_a_file_that_others_have_changed_is_read(tmp_path) -> None:
     path = tmp_path / "file.h5"
     path.write_bytes(hdf5_bytes(fill))
