@@ -72,13 +72,12 @@ def grow_tree_arrays(
     """Arrays of `grow_tree`."""
     link = np.zeros((256 + len(root_cells), 8), np.int32)
     beam = np.zeros((256 + len(root_cells), 6))
-    n = 0
+    n = i = int(np.int64(0))  # a literal would be compiled as a type of its own
     for cell in root_cells:
         link[n, PARENT] = link[n, EDGE] = -1
         link[n, CELL] = cell
         beam[n, IMAGE_X], beam[n, IMAGE_Y] = root
         n += 1
-    i = 0
     while i < n:
         while n + most_children(view, link[i, CELL]) > len(link):
             link, beam = enlarged(link), enlarged(beam)

@@ -3,6 +3,8 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from raytrace.arrays import Floats
 from raytrace.kernels.beams import ORDER
 from raytrace.kernels.blocks import Block, next_block
@@ -141,7 +143,7 @@ def sum_horizontal_edge(
     """
     edge, images, hits, workspace = beams.edge, beams.images, beams.hits, work.workspace
     z_in, bounces = geometry.transmitter_z, geometry.image_bounces
-    first = 0
+    first = int(np.int64(0))  # a literal would be compiled as a type of its own
     while first < len(hits.pair):
         block = next_block(geometry, hits, first, workspace)
         first += block.n

@@ -3,6 +3,8 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from raytrace.kernels.beam_hits import Hits
 from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.blocks import next_block
@@ -64,7 +66,7 @@ def sum_reflections(
     (tree, hits), building, wavelength = beams, geometry.building, tables.wavelength
     z_transmitter = geometry.transmitter[2]
     z_root = lanes_of(z_transmitter)
-    first = 0
+    zero = first = int(np.int64(0))  # a literal would be compiled as a type of its own
     while first < len(hits.pair):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
@@ -84,7 +86,7 @@ def sum_reflections(
                 collector, workspace, bound, weight_here, float(n_images)
             )
         bundle = empty_bundle()
-        k, side, grazing = 0, 0, none_chosen()
+        k, side, grazing = zero, zero, none_chosen()
         while k < n_images:
             slope = (load(workspace.image_z[k]) - z_transmitter) * per_length
             offset = ONE_SIDED_OFFSETS_M[side]

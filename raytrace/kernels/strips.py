@@ -301,8 +301,8 @@ def grow_strip_arrays(
     length, _ = in_frame(frame[0], view.ends[root, 2], view.ends[root, 3])
     write_box(rays, length)
     first[1, 0] = 4
-    n = 1
-    i = 0
+    i = int(np.int64(0))  # a literal would be compiled as a type of its own
+    n = i + 1
     while i < n:
         children = most_children(view, link[i, CELL])
         corners = first[i + 1, 0] - first[i, 0] + 2

@@ -7,6 +7,8 @@ transmitter to the edge, a leg from the edge to the receiver, and one image heig
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from raytrace.arrays import Floats
 from raytrace.kernels.beam_hits import Hits
 from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Tree
@@ -242,7 +244,8 @@ def add_pair(
     """Add the paths of a pair of legs, one for every image height."""
     n_images = 2 * (geometry.max_reflections - pair.order) + 1
     common, per_total = common_factor(pair.edge.wedge.n, tables.wavelength), 1.0 / pair.total
-    k, side, grazing = 0, 0, none_chosen()
+    k = side = int(np.int64(0))  # a literal would be compiled as a type of its own
+    grazing = none_chosen()
     while k < n_images:
         slope = (load(workspace.image_z[k]) - geometry.transmitter[2]) * per_total
         bounces, offset = geometry.image_bounces[k], ONE_SIDED_OFFSETS_M[side]
@@ -287,7 +290,8 @@ def sum_vertical_edge(
     collector
         Added to.
     """
-    edge, legs, hits, first = beams.edge, beams.legs, beams.hits, 0
+    edge, legs, hits = beams.edge, beams.legs, beams.hits
+    first = int(np.int64(0))  # a literal would be compiled as a type of its own
     while first < len(hits.pair):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
