@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 import numba
 
-from raytrace.kernels import vectors as vectors  # numba is to know them
+from raytrace.kernels import vectors as vectors  # registers the types with numba
 from raytrace.kernels.cache import keep_compiled
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -27,13 +27,13 @@ def jit(
     fast
         Allow `FAST` in place of strict IEEE arithmetic.
     allocates
-        Whether it makes arrays. One that does not is spared the counting of references, which
-        otherwise takes most of the time of a loop that passes arrays in tuples.
+        Whether it creates arrays. Otherwise it does without reference counting, which takes most
+        of the time of a loop that passes arrays in tuples.
     inner
-        Whether only kernels call it, which saves compiling a way in from Python. It must not
-        make arrays.
+        Whether only kernels call it, so that no wrapper for Python is compiled. It must not create
+        arrays.
     inline
-        Whether it is moreover one of the small functions of inner loops, and always inlined.
+        Whether it is an inner function that is always inlined.
     """
     inner = inner or inline
 

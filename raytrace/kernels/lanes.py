@@ -1,9 +1,9 @@
 """Eight numbers side by side: what the field kernels compute with.
 
 A kernel that takes `Lanes` evaluates eight paths at once, in the vector registers of the processor.
-In Python they are arrays of eight; the functions here say in NumPy what each of them means, and
-`raytrace.kernels.vectors` tells numba how to compile them, and the operators, to single vector
-instructions. `tests/raytrace/kernels/test_lanes.py` holds one to the other.
+In Python they are arrays of eight; the functions here define each operation in NumPy, and
+`raytrace.kernels.vectors` compiles them, and the operators, to single vector instructions.
+`tests/raytrace/kernels/test_lanes.py` compares the two.
 """
 
 from typing import Any
@@ -13,18 +13,18 @@ import numpy as np
 from raytrace.arrays import Bools, Complexes, Floats
 
 WIDTH = 8
-"""How many numbers lie side by side: a 512-bit register, or two of 256 bits."""
+"""Number of lanes: a 512-bit register, or two of 256 bits."""
 
 Lanes = Floats
 Mask = Bools
 ComplexLanes = Complexes
 
 Number = Any
-"""A float or eight: what a kernel takes that is compiled for both."""
+"""A float or `Lanes`, in kernels that are compiled for both."""
 
 
 def lanes_of(x: float) -> Lanes:
-    """Eight times the same number."""
+    """Eight equal numbers."""
     return np.full(WIDTH, x)
 
 
@@ -49,27 +49,27 @@ def sqrt(x: Lanes) -> Lanes:
 
 
 def floor(x: Lanes) -> Lanes:
-    """Largest whole numbers not above."""
+    """Round down to integers."""
     return np.floor(x)
 
 
 def absolute(x: Lanes) -> Lanes:
-    """Numbers without their signs."""
+    """Absolute values."""
     return np.abs(x)
 
 
 def minimum(a: Lanes, b: Lanes | float) -> Lanes:
-    """Smaller ones of each two."""
-    return np.minimum(a, b)
+    """Smaller number of each pair; the second where the first is NaN."""
+    return np.where(a < b, a, b)
 
 
 def maximum(a: Lanes, b: Lanes | float) -> Lanes:
-    """Larger ones of each two."""
-    return np.maximum(a, b)
+    """Larger number of each pair; the second where the first is NaN."""
+    return np.where(a > b, a, b)
 
 
 def copysign(a: Lanes | float, b: Lanes) -> Lanes:
-    """Sizes of the first with the signs of the second."""
+    """Magnitudes of the first with the signs of the second."""
     return np.copysign(a, b)
 
 
@@ -99,7 +99,7 @@ def all_of(chosen: Mask) -> bool:
 
 
 def complex_of(real: Lanes, imag: Lanes | float) -> ComplexLanes:
-    """Complex numbers of their parts."""
+    """Complex numbers from their parts."""
     return np.asarray(real + 1j * np.asarray(imag), np.complex128)
 
 

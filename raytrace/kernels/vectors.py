@@ -1,7 +1,7 @@
-"""How numba compiles `raytrace.kernels.lanes`: to LLVM's vectors.
+"""Compilation of `raytrace.kernels.lanes` to LLVM's vectors.
 
-Importing this module teaches numba three types, eight floats, eight complex numbers and eight
-truth values, with their operators and the functions of `lanes`.
+Importing this module registers three types with numba, eight floats, eight complex numbers and
+eight booleans, with their operators and the functions of `lanes`.
 """
 
 import operator
@@ -35,7 +35,7 @@ class ComplexLanesType(types.Type):
 
 
 class MaskType(types.Type):
-    """Eight truth values."""
+    """Eight booleans."""
 
 
 LANES, COMPLEX, MASK = (t(n) for t, n in (
@@ -63,12 +63,12 @@ class _ComplexLanesModel(models.StructModel):
 
 
 Lower = Callable[[ir.IRBuilder, Sequence[Any]], Any]
-"""What writes the instructions: of a builder and the operands, real ones as vectors, complex ones
-as pairs of them."""
+"""Function that emits the instructions, given a builder and the operands: real ones as vectors,
+complex ones as pairs of vectors."""
 
 
 def _spread(builder: ir.IRBuilder, number: Value) -> Value:
-    """Eight times a number."""
+    """Vector of eight equal numbers."""
     one = builder.insert_element(ir.Constant(_DOUBLES, ir.Undefined), number, _index(0))
     zeros = ir.Constant(_INTS, [0] * WIDTH)
     return builder.shuffle_vector(one, ir.Constant(_DOUBLES, ir.Undefined), zeros)
@@ -79,7 +79,7 @@ def _index(k: int) -> ir.Constant:
 
 
 def _operand(context: Any, builder: ir.IRBuilder, kind: types.Type, value: Value) -> Any:
-    """Value of a numba type as vectors, where it is a number."""
+    """Value of a numba type; a number as a vector or a pair of vectors."""
     if kind == FLOAT:
         return _spread(builder, value)
     if kind in (COMPLEX, COMPLEX_FLOAT):
@@ -89,10 +89,10 @@ def _operand(context: Any, builder: ir.IRBuilder, kind: types.Type, value: Value
     return value
 
 
-def _teach(
+def _implement(
     function: Callable[..., Any], result: types.Type, *cases: tuple[types.Type, ...]
 ) -> Callable[[Lower], Lower]:
-    """Decorate what compiles a function, of arguments of these types, to instructions."""
+    """Decorate the function that emits the instructions of `function` for these argument types."""
 
     def decorate(write: Lower) -> Lower:
         def lower(context: Any, builder: ir.IRBuilder, sig: Any, args: Sequence[Value]) -> Any:
@@ -113,16 +113,16 @@ def _register(
     cases: Sequence[tuple[types.Type, ...]],
     lower: Callable[..., Value],
 ) -> None:
-    """Tell numba the types of a function, and how it is compiled."""
+    """Register the types of a function and its lowering with numba."""
     for case in cases:
         lower_builtin(function, *case)(lower)
     attributes = {"key": function, "cases": [signature(result, *case) for case in cases]}
-    tell: Any = infer_global(function)
-    tell(type(f"{function.__name__}_of_lanes", (ConcreteTemplate,), attributes))
+    infer: Any = infer_global(function)
+    infer(type(f"{function.__name__}_of_lanes", (ConcreteTemplate,), attributes))
 
 
 def _returned(context: Any, builder: ir.IRBuilder, result: types.Type, value: Any) -> Value:
-    """Value that numba expects of a function."""
+    """Result of a function as numba represents it."""
     if result == COMPLEX:
         made = cgutils.create_struct_proxy(COMPLEX)(context, builder)
         made.real, made.imag = value
@@ -133,7 +133,7 @@ def _returned(context: Any, builder: ir.IRBuilder, result: types.Type, value: An
 
 
 def _with_numbers(own: types.Type, *others: types.Type) -> list[tuple[types.Type, types.Type]]:
-    """Pairs of operands: two of a type, or one of it and another on either side."""
+    """Types of operands: both of one type, or one of them of another type, on either side."""
     return [(own, own), *((own, o) for o in others), *((o, own) for o in others)]
 
 
@@ -142,32 +142,32 @@ _COMPLEX_PAIRS = _with_numbers(COMPLEX, COMPLEX_FLOAT)
 _MIXED_PAIRS = [(COMPLEX, LANES), (COMPLEX, FLOAT)]
 
 
-def _teach_operators() -> None:
-    """Arithmetic and comparisons."""
+def _implement_operators() -> None:
+    """Register arithmetic and comparisons."""
     for name, write in {"add": "fadd", "sub": "fsub", "mul": "fmul", "truediv": "fdiv"}.items():
         for op in (getattr(operator, name), getattr(operator, f"i{name}")):
-            _teach(op, LANES, *_REAL_PAIRS)(lambda b, x, w=write: getattr(b, w)(x[0], x[1]))
+            _implement(op, LANES, *_REAL_PAIRS)(lambda b, x, w=write: getattr(b, w)(x[0], x[1]))
     for name, write in {"add": "fadd", "sub": "fsub"}.items():
         for op in (getattr(operator, name), getattr(operator, f"i{name}")):
-            _teach(op, COMPLEX, *_COMPLEX_PAIRS)(
+            _implement(op, COMPLEX, *_COMPLEX_PAIRS)(
                 lambda b, x, w=write: [getattr(b, w)(x[0][k], x[1][k]) for k in range(2)]
             )
     for op in (operator.mul, operator.imul):
-        _teach(op, COMPLEX, *_COMPLEX_PAIRS)(_product)
-        _teach(op, COMPLEX, *_MIXED_PAIRS)(lambda b, x: [b.fmul(part, x[1]) for part in x[0]])
-        _teach(op, COMPLEX, *((two, one) for one, two in _MIXED_PAIRS))(
+        _implement(op, COMPLEX, *_COMPLEX_PAIRS)(_product)
+        _implement(op, COMPLEX, *_MIXED_PAIRS)(lambda b, x: [b.fmul(part, x[1]) for part in x[0]])
+        _implement(op, COMPLEX, *((two, one) for one, two in _MIXED_PAIRS))(
             lambda b, x: [b.fmul(x[0], part) for part in x[1]]
         )
     for name, sign in {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "=="}.items():
-        _teach(getattr(operator, name), MASK, *_REAL_PAIRS)(
+        _implement(getattr(operator, name), MASK, *_REAL_PAIRS)(
             lambda b, x, s=sign: b.fcmp_ordered(s, x[0], x[1])
         )
-    _teach(operator.ne, MASK, *_REAL_PAIRS)(lambda b, x: b.fcmp_unordered("!=", x[0], x[1]))
+    _implement(operator.ne, MASK, *_REAL_PAIRS)(lambda b, x: b.fcmp_unordered("!=", x[0], x[1]))
     for op, write in ((operator.and_, "and_"), (operator.or_, "or_")):
-        _teach(op, MASK, (MASK, MASK))(lambda b, x, w=write: getattr(b, w)(x[0], x[1]))
-    _teach(operator.invert, MASK, (MASK,))(lambda b, x: b.not_(x[0]))
-    _teach(operator.neg, LANES, (LANES,))(lambda b, x: b.fneg(x[0]))
-    _teach(operator.neg, COMPLEX, (COMPLEX,))(lambda b, x: [b.fneg(part) for part in x[0]])
+        _implement(op, MASK, (MASK, MASK))(lambda b, x, w=write: getattr(b, w)(x[0], x[1]))
+    _implement(operator.invert, MASK, (MASK,))(lambda b, x: b.not_(x[0]))
+    _implement(operator.neg, LANES, (LANES,))(lambda b, x: b.fneg(x[0]))
+    _implement(operator.neg, COMPLEX, (COMPLEX,))(lambda b, x: [b.fneg(part) for part in x[0]])
 
 
 def _product(builder: ir.IRBuilder, x: Sequence[Any]) -> list[Value]:
@@ -176,16 +176,16 @@ def _product(builder: ir.IRBuilder, x: Sequence[Any]) -> list[Value]:
     return [subtract(m(a, c), m(b, d)), add(m(a, d), m(b, c))]
 
 
-_teach_operators()
-_teach(lanes.lanes_of, LANES, (FLOAT,))(lambda b, x: x[0])
-_teach(lanes.lane, FLOAT, (LANES, types.intp))(lambda b, x: b.extract_element(x[0], x[1]))
-_teach(lanes.complex_of, COMPLEX, *_REAL_PAIRS)(lambda b, x: x)
-_teach(lanes.real_of, LANES, (COMPLEX,))(lambda b, x: x[0][0])
-_teach(lanes.imag_of, LANES, (COMPLEX,))(lambda b, x: x[0][1])
-_teach(lanes.where, LANES, *((MASK, *pair) for pair in _REAL_PAIRS))(
+_implement_operators()
+_implement(lanes.lanes_of, LANES, (FLOAT,))(lambda b, x: x[0])
+_implement(lanes.lane, FLOAT, (LANES, types.intp))(lambda b, x: b.extract_element(x[0], x[1]))
+_implement(lanes.complex_of, COMPLEX, *_REAL_PAIRS)(lambda b, x: x)
+_implement(lanes.real_of, LANES, (COMPLEX,))(lambda b, x: x[0][0])
+_implement(lanes.imag_of, LANES, (COMPLEX,))(lambda b, x: x[0][1])
+_implement(lanes.where, LANES, *((MASK, *pair) for pair in _REAL_PAIRS))(
     lambda b, x: b.select(x[0], x[1], x[2])
 )
-_teach(lanes.where_complex, COMPLEX, *((MASK, *pair) for pair in _COMPLEX_PAIRS))(
+_implement(lanes.where_complex, COMPLEX, *((MASK, *pair) for pair in _COMPLEX_PAIRS))(
     lambda b, x: [b.select(x[0], x[1][k], x[2][k]) for k in range(2)]
 )
 
@@ -198,45 +198,45 @@ def _intrinsic(function: Callable[..., Any], name: str, *cases: tuple[types.Type
         called = cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{WIDTH}f64")
         return builder.call(called, x)
 
-    _teach(function, LANES, *cases)(write)
+    _implement(function, LANES, *cases)(write)
 
 
 _intrinsic(lanes.sqrt, "sqrt", (LANES,))
 _intrinsic(lanes.floor, "floor", (LANES,))
 _intrinsic(lanes.absolute, "fabs", (LANES,))
 _intrinsic(lanes.copysign, "copysign", *_REAL_PAIRS)
-_teach(lanes.minimum, LANES, *_REAL_PAIRS)(
+_implement(lanes.minimum, LANES, *_REAL_PAIRS)(
     lambda b, x: b.select(b.fcmp_ordered("<", x[0], x[1]), x[0], x[1])
 )
-_teach(lanes.maximum, LANES, *_REAL_PAIRS)(
+_implement(lanes.maximum, LANES, *_REAL_PAIRS)(
     lambda b, x: b.select(b.fcmp_ordered(">", x[0], x[1]), x[0], x[1])
 )
 
 
-_teach(lanes.none_chosen, MASK, ())(lambda b, x: ir.Constant(_BITS, [0] * WIDTH))
+_implement(lanes.none_chosen, MASK, ())(lambda b, x: ir.Constant(_BITS, [0] * WIDTH))
 
 
 def _as_byte(builder: ir.IRBuilder, mask: Value) -> Value:
     return builder.bitcast(mask, ir.IntType(WIDTH))
 
 
-@_teach(lanes.any_of, types.boolean, (MASK,))
+@_implement(lanes.any_of, types.boolean, (MASK,))
 def _any(builder: ir.IRBuilder, x: Sequence[Any]) -> Value:
     return builder.icmp_unsigned("!=", _as_byte(builder, x[0]), ir.Constant(ir.IntType(WIDTH), 0))
 
 
-@_teach(lanes.all_of, types.boolean, (MASK,))
+@_implement(lanes.all_of, types.boolean, (MASK,))
 def _all(builder: ir.IRBuilder, x: Sequence[Any]) -> Value:
     return builder.icmp_unsigned("==", _as_byte(builder, x[0]), ir.Constant(ir.IntType(WIDTH), -1))
 
 
-def _teach_memory(
+def _implement_on_array(
     function: Callable[..., Any],
     result: types.Type,
     dimensions: int,
     write: Callable[[ir.IRBuilder, Value, Sequence[Value]], Any],
 ) -> None:
-    """Teach numba a function whose first argument is an array; it is given as a pointer."""
+    """Register a function whose first argument is an array, passed on as a pointer."""
     with_lanes = (LANES,) if function is not lanes.load else ()
     cases = [(types.Array(FLOAT, dimensions, "C", readonly=r), *with_lanes) for r in (False, True)]
 
@@ -256,7 +256,7 @@ def _store(builder: ir.IRBuilder, data: Value, args: Sequence[Value]) -> None:
 
 
 def _gather(columns: int, stride: int) -> Callable[..., list[Value]]:
-    """Write the loads of so many numbers from each of eight rows, and their transposition."""
+    """Return a function that emits loads from `columns` columns of eight rows, transposed."""
 
     def write(builder: ir.IRBuilder, data: Value, args: Sequence[Value]) -> list[Value]:
         row = ir.VectorType(_DOUBLE, columns)
@@ -301,7 +301,7 @@ def _shuffled(builder: ir.IRBuilder, a: Value, b: Value, take: Sequence[int]) ->
 
 
 def _joined(builder: ir.IRBuilder, parts: Sequence[Value]) -> Value:
-    """Short vectors one behind the other."""
+    """Concatenation of short vectors."""
     while len(parts) > 1:
         n = parts[0].type.count
         parts = [
@@ -312,7 +312,7 @@ def _joined(builder: ir.IRBuilder, parts: Sequence[Value]) -> Value:
 
 
 def _unpacked(builder: ir.IRBuilder, a: Value, b: Value) -> list[Value]:
-    """Numbers of two vectors in turn: the even ones, and the odd ones."""
+    """Two vectors interleaved: their even entries, and their odd entries."""
     return [
         _shuffled(builder, a, b, [x for k in range(odd, 8, 2) for x in (k, k + 8)])
         for odd in range(2)
@@ -327,9 +327,9 @@ def _quartered(builder: ir.IRBuilder, a: Value, b: Value) -> list[Value]:
     ]
 
 
-_teach_memory(lanes.load, LANES, 1, _load)
-_teach_memory(lanes.store, types.none, 1, _store)
-_teach_memory(lanes.gather2, types.UniTuple(LANES, 2), 2, _gather(2, 2))
-_teach_memory(lanes.gather_pairs1, types.UniTuple(LANES, 2), 1, _gather(2, 1))
-_teach_memory(lanes.gather_pairs2, types.UniTuple(LANES, 4), 2, _gather(4, 2))
-_teach_memory(lanes.gather_pairs4, types.UniTuple(LANES, 8), 2, _gather(8, 4))
+_implement_on_array(lanes.load, LANES, 1, _load)
+_implement_on_array(lanes.store, types.none, 1, _store)
+_implement_on_array(lanes.gather2, types.UniTuple(LANES, 2), 2, _gather(2, 2))
+_implement_on_array(lanes.gather_pairs1, types.UniTuple(LANES, 2), 1, _gather(2, 1))
+_implement_on_array(lanes.gather_pairs2, types.UniTuple(LANES, 4), 2, _gather(4, 2))
+_implement_on_array(lanes.gather_pairs4, types.UniTuple(LANES, 8), 2, _gather(8, 4))
