@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Floats
-from raytrace.kernels.beams import ORDER
+from raytrace.kernels.beams import ORDER, Tree
 from raytrace.kernels.blocks import Block, next_block
 from raytrace.kernels.bounds import free_space
 from raytrace.kernels.building import TraceGeometry
@@ -33,7 +33,8 @@ from raytrace.kernels.lanes import (
     where,
 )
 from raytrace.kernels.plan_view import GRAZING_M
-from raytrace.kernels.records import record_paths
+from raytrace.kernels.records import Record, record_paths
+from raytrace.kernels.strips import StripTree
 from raytrace.kernels.sums import Bundle, empty_bundle, with_path
 from raytrace.kernels.validity import OFFSET_M, one_sided_weight, validity_weight
 from raytrace.kernels.workspace import Collector, add_bundle, apply_power_threshold, count_path
@@ -93,14 +94,13 @@ def add_edge_paths(
     bundle: Bundle,
     geometry: TraceGeometry,
     tables: FieldTables,
-    beams: HorizontalEdgeBeams,
+    trees: tuple[Tree, StripTree],
     path: EdgePath,
     block: Block,
     work: EdgeWorkspace,
-    collector: Collector,
+    record: Record,
 ) -> Bundle:
     """Add paths over an edge; one-sided evaluations of those that graze another edge."""
-    record, trees, images = collector.record, (beams.tree, beams.strips), beams.tree.beam
     legs = legs_over_edge(geometry.building.plan, path, trees, block, work)
     grazing, excess = path.weight >= 0.0, path.before + path.after - block.straight
     for side in range(len(OFFSETS_OF_LEGS_M)):
@@ -109,7 +109,7 @@ def add_edge_paths(
         weight = path.weight * validity_weight(n_walls, geometry.max_walls)
         weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.25)
         if any_of(weight > 0.0):
-            gain = edge_gain(geometry, tables, path, legs, images, offsets, n_walls, work)
+            gain = edge_gain(geometry, tables, path, legs, trees[0].beam, offsets, n_walls, work)
             count_path(work.workspace, path.order, weight)
             bundle = with_path(bundle, gain, excess, weight, legs.arriving)
             if record.used[0] >= 0:
@@ -143,6 +143,7 @@ def sum_horizontal_edge(
     """
     edge, images, hits, workspace = beams.edge, beams.images, beams.hits, work.workspace
     z_in, bounces = geometry.transmitter_z, geometry.image_bounces
+    trees = beams.tree, beams.strips
     first = int(np.int64(0))  # a literal would be compiled as a type of its own
     while first < len(hits.pair):
         block = next_block(geometry, hits, first, workspace)
@@ -180,6 +181,6 @@ def sum_horizontal_edge(
                         block.beam, p, a, b, order + bounces[a] + bounces[b], weight,
                     )  # fmt: skip
                     bundle = add_edge_paths(
-                        bundle, geometry, tables, beams, path, block, work, collector
+                        bundle, geometry, tables, trees, path, block, work, collector.record
                     )
         add_bundle(collector.sums, workspace, block.n, bundle)

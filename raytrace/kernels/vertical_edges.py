@@ -315,5 +315,8 @@ def sum_vertical_edge(
                 )  # fmt: skip
                 bound, n_paths = bound * bound_out * bounds_in[p], float(n_images)
                 weight = apply_power_threshold(collector, workspace, bound, weight, n_paths)
-            bundle = add_pair(bundle, geometry, tables, block, pair, weight, workspace, collector)
+            if any_of(weight > 0.0):
+                bundle = add_pair(
+                    bundle, geometry, tables, block, pair, weight, workspace, collector
+                )
         add_bundle(collector.sums, workspace, block.n, bundle)
