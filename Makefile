@@ -5,10 +5,12 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 RESULTS ?= results
 QUICK ?=
+SECONDS ?= 60
+SEED ?= 0
 PEERS ?= .venv-peers
 
 .DEFAULT_GOAL := help
-.PHONY: help install maps experiments test test-lowest lint types contracts bench bench-peers bench-growth docs dist clean
+.PHONY: help install maps experiments test test-lowest lint types contracts fuzz torture bench bench-peers bench-growth docs dist clean
 
 help: ## list these targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
@@ -45,6 +47,9 @@ types: install ## check types
 
 contracts: install ## check that the packages keep their layers
 	$(BIN)/lint-imports
+
+fuzz: install ## attack readers, options and the library with mutated inputs (SECONDS=60, SEED=0)
+	PYTHONPATH=tests:tests/helpers $(BIN)/python -m fuzz --seconds $(SECONDS) --seed $(SEED)
 
 bench: install ## measure the speed of tracer and learning, side by side with plain C
 	$(BIN)/python -m pytest tests/benchmarks --benchmark-enable --benchmark-only
