@@ -91,7 +91,7 @@ def add_bundle(sums: Sums, workspace: Workspace, n: int, bundle: Bundle) -> None
             sums.n_paths[r, k] += workspace.counts[k, j]
 
 
-@jit(inner=True)
+@jit(inline=True)
 def apply_power_threshold(
     collector: Collector, workspace: Workspace, bound: Lanes, weight: Lanes, n_paths: float
 ) -> Lanes:
@@ -104,12 +104,20 @@ def apply_power_threshold(
     bound, weight, n_paths
         Bounds on the powers, the paths' weights, and how many there are at each receiver.
     """
-    min_power, sums = collector.min_power, collector.sums
+    below = bound < collector.min_power
+    if any_of(below & (weight > 0.0)):
+        left = where(below, weight, 0.0) * n_paths
+        add_left_out(collector.sums, workspace.receivers, bound, left, collector.min_power)
+    return where(below, 0.0, weight)
+
+
+@jit(inner=True)
+def add_left_out(sums: Sums, receivers: Ints, bound: Lanes, left: Lanes, min_power: float) -> None:
+    """Record numbers of paths that are left out at eight receivers, by their bounds."""
     for j in range(WIDTH):
-        power, left = lane(bound, j), n_paths * lane(weight, j)
-        if power < min_power and left > 0.0:
-            sums.left_out[workspace.receivers[j]] += left * power
+        power, n_paths = lane(bound, j), lane(left, j)
+        if n_paths > 0.0:
+            sums.left_out[receivers[j]] += n_paths * power
             if math.isinf(min_power):
                 level = int(-10.0 * math.log10(max(power, 1e-39)))
-                sums.bins[max(level, 0)] += left
-    return where(bound < min_power, 0.0, weight)
+                sums.bins[max(level, 0)] += n_paths
