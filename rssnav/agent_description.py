@@ -9,14 +9,21 @@ classes that the caller passes; it imports no module.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rssnav.agents import Agent, LocationAgent, RssAgent
-from rssnav.discrete_states import ExactStates, Fluctuation, IntervalStates, ToleranceStates
+from rssnav.discrete_states import (
+    ExactStates,
+    Fluctuation,
+    IntervalStates,
+    StateRule,
+    ToleranceStates,
+)
 
 if TYPE_CHECKING:
     from rssnav.decision_process import DecisionProcess
@@ -136,13 +143,37 @@ def _instance(description: AgentDescription, known: Mapping[str, type]) -> Any:
         name: _instance(value, known) if isinstance(value, AgentDescription) else value
         for name, value in description.parameters.items()
     }
+    if cls in _PUBLIC:
+        _check_types(cls, values)
     try:
         return cls(**values)
-    except TypeError as error:
+    except Exception as error:  # whatever a class of the caller's raises
         raise ValueError(
             f"agent class {description.class_path} does not accept the parameters of the file "
             f"({', '.join(values)}): {error}"
         ) from error
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+_IS_OF_TYPE: dict[str, Callable[[Any], bool]] = {
+    "float": _is_number,
+    "tuple[float, ...]": lambda value: isinstance(value, tuple) and all(map(_is_number, value)),
+    "StateRule": lambda value: isinstance(value, StateRule),
+    "Fluctuation": lambda value: isinstance(value, Fluctuation),
+}
+"""Whether a value is of a type, by the annotations of the fields of our classes."""
+
+
+def _check_types(cls: type[Any], values: Mapping[str, Any]) -> None:
+    """Refuse values of other types than a class of ours has."""
+    for field in dataclasses.fields(cls):
+        if field.name in values and not _IS_OF_TYPE[str(field.type)](values[field.name]):
+            raise ValueError(
+                f"{cls.__name__}.{field.name}: {values[field.name]!r} is not of type {field.type}"
+            )
 
 
 def same_agent(one: Agent, other: Agent) -> bool:

@@ -5,21 +5,29 @@ One dataset per array of the result and of its world; the parameters are attribu
 to a temporary file and then renamed: a killed run leaves the old file or none.
 
 Version 2 stores agents of any class and the table ``cell_of_state``; files of version 1 are read.
+Nothing that a file says is believed before it is checked, and no class that it names is imported.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from atomicfiles import atomic_write
-from raytrace.results.hdf5 import hdf5_bytes
+from raytrace.results.checked_hdf5 import (
+    LARGEST,
+    Checked,
+    Hdf5ContentError,
+    Shape,
+    open_checked,
+)
+from raytrace.results.hdf5 import hdf5_bytes, write_array
 from rssnav.agent_description import AgentDescription, describe, restore
 from rssnav.agents import Agent, LocationAgent, RssAgent
 from rssnav.discrete_states import (
@@ -30,6 +38,7 @@ from rssnav.discrete_states import (
     ToleranceStates,
 )
 from rssnav.learning_parameters import QLearning
+from rssnav.result_checks import check_result, check_world
 from rssnav.schedule import Schedule
 from rssnav.world import GridWorld
 
@@ -37,35 +46,75 @@ FORMAT = "rssnav-training"
 VERSION = 2
 _VERSIONS = (1, VERSION)
 
-# units and long name of each array
+_MAX_GROUPS = 50  # of an agent
+
+ParametersT = TypeVar("ParametersT")
+
+
+class _Array(NamedTuple):
+    """What is stored of an array, and what a file may hold."""
+
+    units: str
+    long_name: str
+    dtype: type[np.generic]
+    shape: Shape
+    low: float = -1
+    high: float = np.inf
+
+
+_RUN = ("R",)
+_EPISODES = ("R", "E")
 _RESULT_ARRAYS = {
-    "run_ids": ("1", "number of the realisation"),
-    "steps": ("1", "steps of each episode, -1 after the last"),
-    "diagonal_steps": ("1", "diagonal steps of each episode, -1 after the last"),
-    "truncated": ("1", "whether each episode was truncated at max_steps"),
-    "episodes_flown": ("1", "episodes of the run"),
-    "cell_of_state": ("1", "cell of each state of the decision process"),
-    "visit_counts": ("1", "visits of each cell up to each snapshot episode, all runs"),
-    "converged_episode": ("1", "episodes flown at convergence, -1 without"),
-    "converged_steps": ("1", "steps flown at convergence, -1 without"),
-    "converged_cpu_s": ("s", "CPU time up to convergence"),
-    "cpu_s": ("s", "CPU time of the run"),
-    "trajectories": ("1", "cells of the final greedy flight, -1 after the last"),
-    "reached": ("1", "whether the final flight reaches the transmitter"),
-    "path_steps": ("1", "steps of the final flight"),
-    "path_length_m": ("m", "length of the final flight"),
-    "n_discrete_states": ("1", "discrete states that the agent distinguished"),
+    "run_ids": _Array("1", "number of the realisation", np.int64, _RUN, 0),
+    "steps": _Array("1", "steps of each episode, -1 after the last", np.int32, _EPISODES),
+    "diagonal_steps": _Array(
+        "1", "diagonal steps of each episode, -1 after the last", np.int32, _EPISODES
+    ),
+    "truncated": _Array(
+        "1", "whether each episode was truncated at max_steps", np.bool_, _EPISODES
+    ),
+    "episodes_flown": _Array("1", "episodes of the run", np.int64, _RUN, 1),
+    "cell_of_state": _Array("1", "cell of each state of the decision process", np.int32, ("S",), 0),
+    "visit_counts": _Array(
+        "1", "visits of each cell up to each snapshot episode, all runs", np.int64, ("K", "C"), 0
+    ),
+    "converged_episode": _Array("1", "episodes flown at convergence, -1 without", np.int64, _RUN),
+    "converged_steps": _Array("1", "steps flown at convergence, -1 without", np.int64, _RUN),
+    "converged_cpu_s": _Array("s", "CPU time up to convergence", np.float64, _RUN, 0, LARGEST),
+    "cpu_s": _Array("s", "CPU time of the run", np.float64, _RUN, 0, LARGEST),
+    "trajectories": _Array(
+        "1", "cells of the final greedy flight, -1 after the last", np.int32, ("R", "T")
+    ),
+    "reached": _Array("1", "whether the final flight reaches the transmitter", np.bool_, _RUN),
+    "path_steps": _Array("1", "steps of the final flight", np.int64, _RUN, 0),
+    "path_length_m": _Array("m", "length of the final flight", np.float64, _RUN, 0, LARGEST),
+    "n_discrete_states": _Array(
+        "1", "discrete states that the agent distinguished", np.int64, _RUN, 0
+    ),
 }
 _DATASET_NAMES = {"n_discrete_states": "n_labels"}  # where it differs from the attribute
 _WORLD_ARRAYS = {
-    "next_state": ("1", "state after each action, -1 where it is impossible"),
-    "rss_dbm": ("dBm", "power-sum RSS"),
-    "position": ("m", "cell centre (x, y)"),
-    "cell": ("1", "indices (i_y, i_x) in the radio map"),
-    "distance_m": ("m", "horizontal distance to the transmitter"),
-    "step_length_m": ("m", "length of each action's step"),
+    "next_state": _Array(
+        "1", "state after each action, -1 where it is impossible", np.int32, ("C", 8)
+    ),
+    "rss_dbm": _Array("dBm", "power-sum RSS", np.float64, ("C",), -np.inf, LARGEST),
+    "position": _Array("m", "cell centre (x, y)", np.float64, ("C", 2), -LARGEST, LARGEST),
+    "cell": _Array("1", "indices (i_y, i_x) in the radio map", np.int32, ("C", 2), 0),
+    "distance_m": _Array(
+        "m", "horizontal distance to the transmitter", np.float64, ("C",), 0, LARGEST
+    ),
+    "step_length_m": _Array("m", "length of each action's step", np.float64, (8,), 0, LARGEST),
 }
-_Q_ARRAY = {"q": ("1", "final Q of each state and action, -inf where it is impossible")}
+_Q_ARRAY = {
+    "q": _Array(
+        "1",
+        "final Q of each state and action, -inf where it is impossible",
+        np.float64,
+        ("R", "S", 8),
+        -np.inf,
+        LARGEST,
+    )
+}
 _WORLD_SCALARS = ("start_state", "speed", "shape", "source", "plan_name", "plan_sha256")
 
 
@@ -132,44 +181,10 @@ def _write(result: ResultContents, agent: AgentDescription, file: h5py.File) -> 
         _write_arrays(file, result, _Q_ARRAY)
 
 
-def read_result_file(path: Path, agents: Sequence[type] = ()) -> dict[str, Any]:
-    """Read the fields of a :class:`~rssnav.TrainingResult` by name; see its ``load``."""
-    if not path.is_file():
-        raise FileNotFoundError(f"{path}: no such training result")
-    try:
-        with h5py.File(path, "r") as file:
-            _check_format(path, file)
-            return _read(file, agents)
-    except ResultFileError:
-        raise
-    except (OSError, KeyError, TypeError, ValueError) as error:
-        raise ResultFileError(
-            f"{path}: not a readable training result ({error}); train again to replace it"
-        ) from error
-
-
-def _check_format(path: Path, file: h5py.File) -> None:
-    found = file.attrs.get("format")
-    if found != FORMAT:
-        raise ResultFileError(
-            f"{path}: format is {found!r}, a training result has {FORMAT!r}; is this another "
-            "kind of file?"
-        )
-    version = _attributes(file)["version"]
-    if version not in _VERSIONS:
-        raise ResultFileError(
-            f"{path}: version {version} of the format, this program reads "
-            f"{' and '.join(map(str, _VERSIONS))}; train again"
-        )
-
-
-def _write_arrays(group: h5py.Group, owner: object, names: dict[str, tuple[str, str]]) -> None:
-    for name, (units, long_name) in names.items():
+def _write_arrays(group: h5py.Group, owner: object, arrays: Mapping[str, _Array]) -> None:
+    for name, info in arrays.items():
         array: NDArray[Any] = getattr(owner, name)
-        compression = "gzip" if array.size else None  # an empty dataset cannot be chunked
-        stored = _DATASET_NAMES.get(name, name)
-        dataset = group.create_dataset(stored, data=array, compression=compression)
-        dataset.attrs["units"], dataset.attrs["long_name"] = units, long_name
+        write_array(group, _DATASET_NAMES.get(name, name), array, info.units, info.long_name)
 
 
 def _write_agent(group: h5py.Group, agent: AgentDescription) -> None:
@@ -185,89 +200,153 @@ def _write_agent(group: h5py.Group, agent: AgentDescription) -> None:
             group.attrs[name] = h5py.Empty("f8") if value is None else value
 
 
-def _read_agent(group: h5py.Group, name: str = "") -> AgentDescription:
-    values = _attributes(group)
-    class_path = str(values.pop("class"))
-    for key, item in group.items():
-        values[key] = _read_agent(item) if isinstance(item, h5py.Group) else _read_sequence(item)
-    parameters = {k: None if isinstance(v, h5py.Empty) else v for k, v in values.items()}
-    return AgentDescription(class_path, name, parameters)
+def read_result_file(path: Path, agents: Sequence[type] = ()) -> dict[str, Any]:
+    """Read the fields of a :class:`~rssnav.TrainingResult` by name; see its ``load``."""
+    if not path.is_file():
+        raise FileNotFoundError(f"{path}: no such training result")
+    try:
+        with open_checked(path) as file:
+            problem = _format_problem(file)
+            if problem is None:
+                return _read(file, agents)
+    except Hdf5ContentError as error:
+        raise ResultFileError(
+            f"{path}: not a readable training result ({error}); train again to replace it"
+        ) from error
+    raise ResultFileError(f"{path}: {problem}")
 
 
-def _read_sequence(dataset: h5py.Dataset) -> NDArray[Any] | tuple[Any, ...]:
-    text = h5py.check_string_dtype(dataset.dtype) is not None
-    values: NDArray[Any] = np.asarray(dataset.asstr()[()] if text else dataset[()])
-    return tuple(values.tolist()) if dataset.attrs["type"] == "tuple" else values
+def _format_problem(file: Checked) -> str | None:
+    found = file.attribute("format") if "format" in file.attribute_names else None
+    if not isinstance(found, str) or found != FORMAT:
+        return (
+            f"format is {found!r}, a training result has {FORMAT!r}; is this another kind of file?"
+        )
+    version = file.attribute("version")
+    if not isinstance(version, int) or version not in _VERSIONS:
+        return (
+            f"version {version!r} of the format, this program reads "
+            f"{' and '.join(map(str, _VERSIONS))}; train again"
+        )
+    return None
 
 
-def _read(file: h5py.File, agents: Sequence[type]) -> dict[str, Any]:
-    world = _read_world(_group(file, "world"))
-    arrays: dict[str, Any] = {
-        name: _array(file, _DATASET_NAMES.get(name, name))
-        for name in _RESULT_ARRAYS
-        if name != "cell_of_state"
-    }
-    if file.attrs["version"] == 1:
-        agent = _agent_of_version_1(_attributes(_group(file, "agent")))
+def _read(file: Checked, agents: Sequence[type]) -> dict[str, Any]:
+    world = _read_world(file.within("world"))
+    schedule = _read_parameters(file.within("schedule"), Schedule)
+    if file.integer("version") == 1:
+        agent = _agent_of_version_1(file.within("agent"))
+        arrays = _read_arrays(file, _RESULT_ARRAYS, without=["cell_of_state"])
         arrays["cell_of_state"] = np.arange(world.n_states, dtype=np.int32)
+        file.sizes["S"] = world.n_states
     else:
-        agent = restore(_read_agent(_group(file, "agent"), str(file.attrs["agent"])), agents)
-        arrays["cell_of_state"] = _array(file, "cell_of_state")
+        description = _read_agent(file.within("agent"), file.text("agent"), [])
+        agent = restore(description, agents)
+        arrays = _read_arrays(file, _RESULT_ARRAYS)
+    check_result(arrays, world, schedule)
     return {
         "world": world,
         "agent": agent,
-        "learning": QLearning(**_attributes(_group(file, "learning"))),
-        "schedule": _read_schedule(_attributes(_group(file, "schedule"))),
-        "q": _array(file, "q") if "q" in file else None,
+        "learning": _read_parameters(file.within("learning"), QLearning),
+        "schedule": schedule,
+        "q": _read_arrays(file, _Q_ARRAY)["q"] if "q" in file else None,
         **arrays,
     }
 
 
-def _agent_of_version_1(values: dict[str, Any]) -> Agent:
-    """Agent of a file of version 1, which stored its parameters in one flat table."""
-    if values["kind"] == "location":
-        return LocationAgent(values["terminal_distance_m"])
-    if values["kind"] != "rss":
-        raise ValueError(f"kind: {values['kind']!r} must be 'rss' or 'location'")
-    states: StateRule = ExactStates()
-    if values["states"] == "tolerance":
-        states = ToleranceStates(values["threshold_db"])
-    elif values["states"] == "intervals":
-        states = IntervalStates(tuple(float(edge) for edge in values["edges_dbm"]))
-    fluctuation = Fluctuation(values["sigma_db"], values["correlation"])
-    return RssAgent(states, values["terminal_dbm"], fluctuation)
-
-
-def _read_world(group: h5py.Group) -> GridWorld:
-    values: dict[str, Any] = {name: _array(group, name) for name in _WORLD_ARRAYS}
-    scalars = _attributes(group)
-    scalars["shape"] = tuple(int(n) for n in scalars["shape"])
-    scalars["source"] = tuple(float(x) for x in scalars["source"])
-    return GridWorld(**values, **scalars)
-
-
-def _read_schedule(values: dict[str, Any]) -> Schedule:
-    values["snapshot_episodes"] = tuple(int(k) for k in values["snapshot_episodes"])
-    return Schedule(**values)
-
-
-def _array(group: h5py.Group, name: str) -> NDArray[Any]:
-    dataset = group[name]
-    if not isinstance(dataset, h5py.Dataset):
-        raise TypeError(f"{name} is not a dataset")
-    return dataset[()]
-
-
-def _group(file: h5py.File, name: str) -> h5py.Group:
-    group = file[name]
-    if not isinstance(group, h5py.Group):
-        raise TypeError(f"{name} is not a group")
-    return group
-
-
-def _attributes(group: h5py.Group) -> dict[str, Any]:
-    """Attributes as plain Python values; arrays stay arrays."""
+def _read_arrays(
+    group: Checked, arrays: Mapping[str, _Array], without: Sequence[str] = ()
+) -> dict[str, Any]:
     return {
-        str(key): value.item() if isinstance(value, np.generic) else value
-        for key, value in group.attrs.items()
+        name: group.array(
+            _DATASET_NAMES.get(name, name), info.dtype, info.shape, low=info.low, high=info.high
+        )
+        for name, info in arrays.items()
+        if name not in without
     }
+
+
+def _read_parameters(group: Checked, kind: type[ParametersT]) -> ParametersT:
+    """Read a dataclass of parameters from attributes; those missing have their defaults."""
+    readers = {
+        "int": group.integer,
+        "float": group.number,
+        "bool": group.boolean,
+        "tuple[int, ...]": group.integers,
+    }
+    found = group.attribute_names
+    fields = {field.name: field for field in dataclasses.fields(kind)}  # pyright: ignore[reportArgumentType]
+    if unknown := set(found) - set(fields):
+        raise Hdf5ContentError(f"{group.group.name}: unknown attributes {sorted(unknown)}")
+    return kind(
+        **{
+            name: readers.get(str(field.type), group.text)(name)
+            for name, field in fields.items()
+            if name in found or field.default is dataclasses.MISSING
+        }
+    )
+
+
+def _read_world(group: Checked) -> GridWorld:
+    n_y, n_x = group.integers("shape", 2, low=1)
+    x, y, z = group.numbers("source", 3)
+    world = GridWorld(
+        **_read_arrays(group, _WORLD_ARRAYS),
+        start_state=group.integer("start_state"),
+        speed=group.integer("speed", low=1),
+        shape=(n_y, n_x),
+        source=(x, y, z),
+        plan_name=group.text("plan_name"),
+        plan_sha256=group.text("plan_sha256"),
+    )
+    check_world(world)
+    return world
+
+
+def _read_agent(group: Checked, name: str, read: list[str]) -> AgentDescription:
+    """Read an agent, or a dataclass that is a field of one.
+
+    Parameters
+    ----------
+    group
+        Where it is.
+    name
+        The agent's name; empty for a field.
+    read
+        Class paths read so far, whose number is limited: a group can hold itself.
+    """
+    read.append(group.text("class"))
+    if len(read) > _MAX_GROUPS:
+        raise Hdf5ContentError(f"group 'agent': more than {_MAX_GROUPS} groups within it")
+    path = read[-1]
+    values = {key: group.attribute(key) for key in group.attribute_names if key != "class"}
+    for key in group.names:
+        if group.is_group(key):
+            values[key] = _read_agent(group.within(key), "", read)
+        else:
+            values[key] = _read_sequence(group, key)
+    return AgentDescription(path, name, values)
+
+
+def _read_sequence(group: Checked, name: str) -> NDArray[Any] | tuple[Any, ...]:
+    if group.holds_texts(name):
+        return group.texts(name)
+    values = group.values(name)
+    is_tuple = group.attributes_of(name).text("type") == "tuple"
+    return tuple(values.tolist()) if is_tuple and values.ndim == 1 else values
+
+
+def _agent_of_version_1(group: Checked) -> Agent:
+    """Agent of a file of version 1, which stored its parameters in one flat table."""
+    kind = group.text("kind")
+    if kind == "location":
+        return LocationAgent(group.number("terminal_distance_m"))
+    if kind != "rss":
+        raise Hdf5ContentError(f"attribute 'agent/kind': {kind!r}, expected 'rss' or 'location'")
+    states: StateRule = ExactStates()
+    if group.text("states") == "tolerance":
+        states = ToleranceStates(group.number("threshold_db"))
+    elif group.text("states") == "intervals":
+        states = IntervalStates(group.numbers("edges_dbm"))
+    fluctuation = Fluctuation(group.number("sigma_db"), group.number("correlation"))
+    return RssAgent(states, group.number("terminal_dbm"), fluctuation)

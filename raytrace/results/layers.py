@@ -11,25 +11,53 @@ from raytrace.kernels.sums import COSINE, EXCESS, EXCESS_SQUARED, SINE, STRONGES
 
 
 class LayerInfo(NamedTuple):
-    """Unit and description of a layer, and whether every map has it."""
+    """Unit and description of a layer, and what it may hold.
+
+    Attributes
+    ----------
+    units, long_name
+        As stored with the layer.
+    low, high
+        Bounds of its values.
+    without_path
+        Its value where no path arrives; None where it may have several.
+    required
+        Whether every map has it.
+    dtype
+        Type of its values.
+    """
 
     units: str
     long_name: str
+    low: float
+    high: float
+    without_path: float | None
     required: bool = False
+    dtype: type[np.generic] = np.float64
 
+
+_LARGEST = float(np.finfo(np.float64).max)
+_POWER = (-np.inf, _LARGEST, -np.inf)
+_DELAY = (0.0, _LARGEST, 0.0)
 
 LAYERS: dict[str, LayerInfo] = {
-    "rss_dbm": LayerInfo("dBm", "received signal strength, sum of the paths' powers", True),
-    "rss_coherent_dbm": LayerInfo(
-        "dBm", "received signal strength, power of the sum of the paths' fields", True
+    "rss_dbm": LayerInfo(
+        "dBm", "received signal strength, sum of the paths' powers", *_POWER, True
     ),
-    "path_count": LayerInfo("1", "number of paths", True),
-    "strongest_path_dbm": LayerInfo("dBm", "power of the strongest path"),
-    "mean_delay_s": LayerInfo("s", "mean delay, weighted with power"),
-    "delay_spread_s": LayerInfo("s", "RMS delay spread, weighted with power"),
-    "angular_spread": LayerInfo("1", "azimuth spread of arrival after Fleury, 0 to 1"),
-    "k_factor_db": LayerInfo("dB", "power of the strongest path over that of all others"),
-    "left_out_db": LayerInfo("dB", "bound on the level of what was left out over the RSS"),
+    "rss_coherent_dbm": LayerInfo(
+        "dBm", "received signal strength, power of the sum of the paths' fields", *_POWER, True
+    ),
+    "path_count": LayerInfo("1", "number of paths", 0, np.inf, None, True, np.int64),
+    "strongest_path_dbm": LayerInfo("dBm", "power of the strongest path", *_POWER),
+    "mean_delay_s": LayerInfo("s", "mean delay, weighted with power", *_DELAY),
+    "delay_spread_s": LayerInfo("s", "RMS delay spread, weighted with power", *_DELAY),
+    "angular_spread": LayerInfo("1", "azimuth spread of arrival after Fleury, 0 to 1", 0, 1, 0),
+    "k_factor_db": LayerInfo(
+        "dB", "power of the strongest path over that of all others", -np.inf, np.inf, -np.inf
+    ),
+    "left_out_db": LayerInfo(
+        "dB", "bound on the level of what was left out over the RSS", -np.inf, np.inf, None
+    ),
 }
 """The fields of a `RadioMap` that hold one value per cell, in the order they are stored in."""
 

@@ -2,11 +2,12 @@
 
 `x` and `y` are dimension scales [m], so xarray opens a map with coordinates; every dataset has
 `units` and `long_name`. The file's attributes store what made the map; the group
-`transmit_antenna` stores the pattern of an antenna given by a table.
+`transmit_antenna` stores the pattern of an antenna given by a table. Nothing that a file says is
+believed before it is checked.
 """
 
-from collections.abc import Mapping
-from dataclasses import asdict, fields
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -21,7 +22,8 @@ from raytrace.grid import Grid
 from raytrace.radio.antenna_patterns import PatternTable
 from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
 from raytrace.radio.transmitter import Transmitter
-from raytrace.results.hdf5 import hdf5_bytes
+from raytrace.results.checked_hdf5 import LARGEST, Checked, Hdf5ContentError, open_checked
+from raytrace.results.hdf5 import hdf5_bytes, write_array
 from raytrace.results.layers import LAYERS
 
 FORMAT = "rssnav radio map"
@@ -30,9 +32,15 @@ FORMAT_VERSION = 1
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _MARKS = (FORMAT.encode(), b"rss_coherent_dbm")
 _ANTENNA = "transmit_antenna"
-_ANTENNAS: dict[str, type[HalfWaveDipole | Isotropic | PatternTable]] = {
-    kind.__name__: kind for kind in (HalfWaveDipole, Isotropic, PatternTable)
+_MADE_WITH = "made_with_"
+_SPACING_TOLERANCE = 1e-6  # of a cell
+_PATTERN_ARRAYS = {
+    "theta_deg": ("deg", "angle from the zenith"),
+    "phi_deg": ("deg", "angle from +x towards +y"),
+    "e_theta": ("1", "amplitude along theta-hat, relative to a 0 dBi radiator"),
+    "e_phi": ("1", "amplitude along phi-hat, relative to a 0 dBi radiator"),
 }
+_POSITIVE = float(np.finfo(np.float64).tiny)
 
 
 class MapContents(Protocol):
@@ -83,12 +91,10 @@ def write_map_file(radio_map: MapContents, path: Path) -> None:
 
 def _write(radio_map: MapContents, file: h5py.File) -> None:
     for axis in ("y", "x"):
-        scale = file.create_dataset(axis, data=getattr(radio_map.grid, axis))
-        scale.attrs.update(units="m", long_name=f"{axis} of the cell centres")
-        scale.make_scale(axis)
+        centres = getattr(radio_map.grid, axis)
+        write_array(file, axis, centres, "m", f"{axis} of the cell centres").make_scale(axis)
     for name, layer in radio_map.layers.items():
-        data = file.create_dataset(name, data=layer, compression="gzip")
-        data.attrs.update(units=LAYERS[name].units, long_name=LAYERS[name].long_name)
+        data = write_array(file, name, layer, LAYERS[name].units, LAYERS[name].long_name)
         data.dims[0].attach_scale(file["y"])
         data.dims[1].attach_scale(file["x"])
     file.attrs.update(attributes_of(radio_map))
@@ -99,7 +105,8 @@ def _save_pattern(antenna: Antenna, file: h5py.File) -> None:
     """Write the arrays of an antenna that has any."""
     for name, value in vars(antenna).items():
         if isinstance(value, np.ndarray):
-            file.create_dataset(f"{_ANTENNA}/{name}", data=value)
+            units, long_name = _PATTERN_ARRAYS[name]
+            write_array(file.require_group(_ANTENNA), name, value, units, long_name)
 
 
 def attributes_of(radio_map: MapContents) -> dict[str, Any]:
@@ -119,7 +126,7 @@ def attributes_of(radio_map: MapContents) -> dict[str, Any]:
         _ANTENNA: type(transmitter.antenna).__name__,
         **{f"{_ANTENNA}_{k}": v for k, v in antenna.items()},
         **asdict(radio_map.config),
-        **{f"made_with_{k}": v for k, v in radio_map.provenance.items()},
+        **{f"{_MADE_WITH}{k}": v for k, v in radio_map.provenance.items()},
     }
     return {key: value for key, value in attributes.items() if value is not None}
 
@@ -137,28 +144,27 @@ def read_map_file(path: Path) -> dict[str, Any]:
     if not path.exists():
         raise MissingMapError(path)
     try:
-        with h5py.File(path) as file:
-            return _read(file, path)
-    except OSError as error:
-        raise _damaged(path, f"not an HDF5 file, or a truncated one ({error})") from error
-    except (KeyError, TypeError, ValueError, RuntimeError) as error:
-        if isinstance(error, MapFileError):
-            raise
-        raise _damaged(path, f"the map is damaged ({error})") from error
+        with open_checked(path) as file:
+            error = _format_error(file, path)
+            if error is None:
+                return _read(file)
+    except Hdf5ContentError as problem:
+        raise _damaged(path, str(problem)) from problem
+    raise error
 
 
 def is_radio_map(path: Path) -> bool:
-    """Return whether an unreadable file is what is left of a radio map, of any version.
+    """Return whether a file is a radio map, or what is left of one, of any version.
 
-    A file that HDF5 cannot open is one if it begins like HDF5 and holds the name of the format or
-    of a dataset that only radio maps have. An empty file counts as one: nothing in it is lost.
+    A file that cannot be read is one if it begins like HDF5 and holds the name of the format or of
+    a dataset that only radio maps have. An empty file counts as one: nothing in it is lost.
     """
     if not path.is_file():
         return False
     try:
-        with h5py.File(path) as file:
-            return file.attrs.get("format") == FORMAT
-    except (OSError, RuntimeError, KeyError):
+        with open_checked(path) as file:
+            return file.text("format") == FORMAT
+    except Hdf5ContentError:
         content = path.read_bytes()
     if not content:
         return True
@@ -169,90 +175,122 @@ def _damaged(path: Path, problem: str) -> MapFileError:
     return MapFileError(f"{path}: {problem}; compute the map again", path, remedy="make_map")
 
 
-def _read(file: h5py.File, path: Path) -> dict[str, Any]:
-    attributes: dict[str, Any] = dict(file.attrs)
-    _check_format(attributes, path)
-    required = [name for name, layer in LAYERS.items() if layer.required]
-    missing = [name for name in ("x", "y", *required) if name not in file]
-    if missing:
-        raise _damaged(path, f"dataset {missing[0]!r} is missing")
-    grid = Grid(
-        _array(file, "x"),
-        _array(file, "y"),
-        float(attributes["receiver_height_m"]),
-        float(attributes["cell_size_m"]),
-    )
-    prefix = "made_with_"
+def _format_error(file: Checked, path: Path) -> MapFileError | None:
+    found = file.attribute("format") if "format" in file.attribute_names else None
+    if not isinstance(found, str) or found != FORMAT:
+        return MapFileError(
+            f"{path}: an HDF5 file, but not a radio map (attribute format = {found!r}, expected "
+            f"{FORMAT!r})",
+            path,
+        )
+    version = file.attribute("format_version")
+    if not isinstance(version, int) or version != FORMAT_VERSION:
+        return _damaged(path, f"format_version = {version!r}, expected {FORMAT_VERSION}")
+    return None
+
+
+def _read(file: Checked) -> dict[str, Any]:
     return {
-        **_layers(file, grid, path),
-        "grid": grid,
-        "transmitter": _transmitter(file, attributes),
-        "config": _config(attributes),
-        "plan_text": str(attributes["plan_text"]),
-        "plan_sha256": str(attributes["plan_sha256"]),
-        "provenance": {
-            k.removeprefix(prefix): _plain(v) for k, v in attributes.items() if k.startswith(prefix)
-        },
+        "grid": _grid(file),
+        **_layers(file),
+        "transmitter": _transmitter(file),
+        "config": _config(file),
+        "plan_text": file.text("plan_text"),
+        "plan_sha256": file.text("plan_sha256"),
+        "provenance": _provenance(file),
     }
 
 
-def _check_format(attributes: dict[str, Any], path: Path) -> None:
-    if attributes.get("format") != FORMAT:
-        raise MapFileError(
-            f"{path}: an HDF5 file, but not a radio map (attribute format = "
-            f"{attributes.get('format')!r}, expected {FORMAT!r})",
-            path,
-        )
-    if attributes["format_version"] != FORMAT_VERSION:
-        raise _damaged(
-            path,
-            f"format_version = {attributes['format_version']}, expected {FORMAT_VERSION}",
-        )
+def _grid(file: Checked) -> Grid:
+    x, y = (
+        file.array(axis, np.float64, (f"n_{axis}",), low=-LARGEST, high=LARGEST)
+        for axis in ("x", "y")
+    )
+    cell_size_m = file.number("cell_size_m", low=_POSITIVE)
+    for name, axis in (("x", x), ("y", y)):
+        rounding = 4.0 * np.spacing(np.abs(axis).max(initial=0.0))
+        off = np.abs(np.diff(axis) - cell_size_m)
+        if axis.size == 0 or (off > _SPACING_TOLERANCE * cell_size_m + rounding).any():
+            raise Hdf5ContentError(
+                f"dataset {name!r}: expected centres of cells that rise in steps of cell_size_m = "
+                f"{cell_size_m:g}"
+            )
+    return Grid(x, y, file.number("receiver_height_m"), cell_size_m)
 
 
-def _layers(file: h5py.File, grid: Grid, path: Path) -> dict[str, NDArray[Any]]:
-    """Read the layers that the file has; refuse any of another shape, or with NaN."""
-    layers = {name: _array(file, name) for name in LAYERS if name in file}
+def _layers(file: Checked) -> dict[str, NDArray[Any]]:
+    """Read the layers that the file has; cells without a path must be such in all of them."""
+    layers = {
+        name: file.array(name, layer.dtype, ("n_y", "n_x"), low=layer.low, high=layer.high)
+        for name, layer in LAYERS.items()
+        if layer.required or name in file
+    }
+    without = np.isneginf(layers["rss_dbm"])
     for name, layer in layers.items():
-        if layer.shape != grid.shape or np.isnan(layer).any():
-            raise _damaged(
-                path,
-                f"dataset {name!r} has shape {layer.shape}, expected {grid.shape} without NaN",
+        value = LAYERS[name].without_path
+        if value is not None and (layer[without] != value).any():
+            raise Hdf5ContentError(
+                f"dataset {name!r}: expected {value:g} in cells without a path, where rss_dbm is "
+                "-inf"
             )
     return layers
 
 
-def _array(file: h5py.File, name: str) -> NDArray[Any]:
-    dataset = file[name]
-    if not isinstance(dataset, h5py.Dataset):
-        raise TypeError(f"{name!r} is no dataset")
-    return np.asarray(dataset[()])
-
-
-def _config(attributes: dict[str, Any]) -> TraceConfig:
+def _config(file: Checked) -> TraceConfig:
     """Limits of the trace; those missing in the file have their defaults."""
-    known = {f.name for f in fields(TraceConfig)} & set(attributes)
-    return TraceConfig(**{name: _plain(attributes[name]) for name in known})
-
-
-def _transmitter(file: h5py.File, attributes: dict[str, Any]) -> Transmitter:
-    prefix = f"{_ANTENNA}_"
-    parameters: dict[str, Any] = {
-        k.removeprefix(prefix): _plain(v) for k, v in attributes.items() if k.startswith(prefix)
+    read: dict[str, Callable[[str], Any]] = {
+        "max_reflections": file.integer,
+        "max_diffractions": file.integer,
+        "max_transmissions": file.integer,
+        "min_power_dbm": lambda name: file.number(name, low=-np.inf),
+        "max_paths": file.integer,
     }
-    pattern = file.get(_ANTENNA)
-    if isinstance(pattern, h5py.Group):
-        parameters |= {str(name): _array(file, f"{_ANTENNA}/{name}") for name in pattern}
-    x, y, z = attributes["transmitter_position_m"]
+    names = file.attribute_names
+    return TraceConfig(**{name: read[name](name) for name in read if name in names})
+
+
+def _transmitter(file: Checked) -> Transmitter:
+    x, y, z = file.numbers("transmitter_position_m", 3)
     return Transmitter(
-        (float(x), float(y), float(z)),
-        float(attributes["transmitter_power_dbm"]),
-        float(attributes["frequency_hz"]),
-        _ANTENNAS[str(attributes[_ANTENNA])](**parameters),
+        (x, y, z),
+        file.number("transmitter_power_dbm"),
+        file.number("frequency_hz", low=_POSITIVE),
+        _antenna(file),
     )
 
 
+def _antenna(file: Checked) -> Antenna:
+    kind = file.text(_ANTENNA)
+    if kind == HalfWaveDipole.__name__:
+        gain_db = file.number(f"{_ANTENNA}_peak_gain_db")
+        if (axis := f"{_ANTENNA}_axis") not in file.attribute_names:
+            return HalfWaveDipole(gain_db)
+        x, y, z = file.numbers(axis, 3)
+        return HalfWaveDipole(gain_db, (x, y, z))
+    if kind == Isotropic.__name__:
+        return Isotropic(file.number(f"{_ANTENNA}_gain_db"))
+    if kind != PatternTable.__name__:
+        raise Hdf5ContentError(f"attribute {_ANTENNA!r}: {kind!r} is no antenna of a map file")
+    pattern = file.within(_ANTENNA)
+    return PatternTable(
+        pattern.array("theta_deg", np.float64, ("n_theta",)),
+        pattern.array("phi_deg", np.float64, ("n_phi",)),
+        pattern.array("e_theta", np.complex128, ("n_theta", "n_phi")),
+        pattern.array("e_phi", np.complex128, ("n_theta", "n_phi")),
+        file.text(f"{_ANTENNA}_name"),
+    )
+
+
+def _provenance(file: Checked) -> dict[str, Any]:
+    found = {
+        name.removeprefix(_MADE_WITH): _plain(file.attribute(name))
+        for name in file.attribute_names
+        if name.startswith(_MADE_WITH)
+    }
+    if "wall_time_s" in found:
+        found["wall_time_s"] = file.number(f"{_MADE_WITH}wall_time_s", low=0.0)
+    return found
+
+
 def _plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return tuple(value.tolist())
-    return value.item() if isinstance(value, np.generic) else value
+    return tuple(value.tolist()) if isinstance(value, np.ndarray) else value

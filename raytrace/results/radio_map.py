@@ -99,10 +99,13 @@ class RadioMap:
             "z": ((), self.grid.height_m, {"units": "m", "long_name": "height of the receivers"}),
         }
         layers = {
-            name: (("y", "x"), layer, LAYERS[name]._asdict()) for name, layer in self.layers.items()
+            name: (
+                ("y", "x"),
+                layer,
+                {"units": LAYERS[name].units, "long_name": LAYERS[name].long_name},
+            )
+            for name, layer in self.layers.items()
         }
-        for _, _, attributes in layers.values():
-            del attributes["required"]
         return xr.Dataset(layers, coords, attributes_of(self))
 
     def save(self, path: str | Path) -> None:

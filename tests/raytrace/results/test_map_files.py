@@ -96,8 +96,15 @@ def full_map() -> RadioMap:
     """A map with every layer there is."""
     first = small_map()
     rng = np.random.default_rng(52)
-    optional = [name for name, layer in LAYERS.items() if not layer.required]
-    return replace(first, **{name: rng.uniform(0.0, 1.0, first.grid.shape) for name in optional})
+    optional = {
+        name: rng.uniform(0.0, 1.0, first.grid.shape)
+        for name, layer in LAYERS.items()
+        if not layer.required
+    }
+    for name, layer in optional.items():
+        if (value := LAYERS[name].without_path) is not None:
+            layer[np.isneginf(first.rss_dbm)] = value
+    return replace(first, **optional)
 
 
 def test_optional_layers_come_back_and_others_stay_none(tmp_path: Path) -> None:
