@@ -66,7 +66,7 @@ class Paths:
 
     @property
     def n_interactions(self) -> Ints:
-        """(n,) number of reflections and diffractions."""
+        """(n,) number of reflections, diffractions and transmissions."""
         return np.count_nonzero(self.interactions, axis=1)
 
     @property

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class RadioMap:
     """Received signal strength over a grid, and further layers.
 
-    A layer that was not computed is None. `raytrace.PathStatistics` defines the layers.
+    A layer that was not computed is None. `docs/theory.md`, section 13, defines the layers.
 
     Attributes
     ----------
