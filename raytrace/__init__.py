@@ -9,7 +9,6 @@ ends in ``_db`` or ``_dbm``.
 from raytrace.config import TraceConfig
 from raytrace.errors import AntennaError, MapFileError, MissingMapError, SceneError, SceneWarning
 from raytrace.grid import Grid
-from raytrace.radio.antenna_patterns import PatternTable
 from raytrace.radio.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
 from raytrace.radio.materials import (
     ABSORBER,
@@ -19,6 +18,7 @@ from raytrace.radio.materials import (
     Layered,
     Material,
 )
+from raytrace.radio.pattern_table import PatternTable
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.path_statistics import PathStatistics
 from raytrace.results.paths import ImpulseResponse, Paths

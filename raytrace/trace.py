@@ -19,7 +19,7 @@ from raytrace.results.radio_map import RadioMap
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import Progress, sum_paths
 from raytrace.solver.evaluation import evaluation_of
-from raytrace.solver.path_classes import path_classes
+from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.setup import prepare
 
 TRACER_VERSION = 3

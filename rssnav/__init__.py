@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rssnav.decision_process import DecisionProcess
     from rssnav.discrete_states import ExactStates, Fluctuation, IntervalStates, ToleranceStates
     from rssnav.learning_parameters import QLearning
-    from rssnav.planning import Path, Solution, greedy_path, shortest_path, value_iteration
+    from rssnav.optimal_flights import Flight, Solution, greedy_path, shortest_path, value_iteration
     from rssnav.result_file import ResultFileError
     from rssnav.results import TrainingResult
     from rssnav.schedule import Schedule
@@ -33,11 +33,11 @@ __all__ = [
     "AgentDescription",
     "DecisionProcess",
     "ExactStates",
+    "Flight",
     "Fluctuation",
     "GridWorld",
     "IntervalStates",
     "LocationAgent",
-    "Path",
     "QLearning",
     "ResultFileError",
     "RssAgent",
@@ -59,7 +59,7 @@ _HOMES = {
     "decision_process": ("DecisionProcess",),
     "discrete_states": ("ExactStates", "Fluctuation", "IntervalStates", "ToleranceStates"),
     "learning_parameters": ("QLearning",),
-    "planning": ("Path", "Solution", "greedy_path", "shortest_path", "value_iteration"),
+    "optimal_flights": ("Flight", "Solution", "greedy_path", "shortest_path", "value_iteration"),
     "results": ("TrainingResult",),
     "schedule": ("Schedule",),
     "result_file": ("ResultFileError",),

@@ -9,7 +9,7 @@ import rssnav.kernels
 from raytrace.kernels.cache import cache_folder
 
 
-class KernelCache(NamedTuple):
+class CacheState(NamedTuple):
     """State of the compiled kernels of a package.
 
     Attributes
@@ -27,18 +27,18 @@ class KernelCache(NamedTuple):
     n_bytes: int
 
 
-def tracer_cache() -> KernelCache:
+def tracer_cache() -> CacheState:
     """State of the tracer's kernels."""
     return _cache_of(raytrace.kernels)
 
 
-def learning_cache() -> KernelCache:
+def learning_cache() -> CacheState:
     """State of the kernels of the learning loops."""
     return _cache_of(rssnav.kernels)
 
 
-def _cache_of(package: ModuleType) -> KernelCache:
+def _cache_of(package: ModuleType) -> CacheState:
     folder = cache_folder(Path(package.__path__[0]))
     files = [] if folder is None else list(folder.glob("*.nb[ci]"))
     n_compiled = sum(file.suffix == ".nbi" for file in files)
-    return KernelCache(folder, n_compiled, sum(file.stat().st_size for file in files))
+    return CacheState(folder, n_compiled, sum(file.stat().st_size for file in files))

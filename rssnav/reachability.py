@@ -13,7 +13,7 @@ from floorplans import FloorPlan
 from floorplans.checks.inspection import Finding
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
-from rssnav.planning import shortest_path
+from rssnav.optimal_flights import shortest_path
 from rssnav.world import GOAL_DISTANCE_M, GridWorld
 
 SPEEDS = (1, 2, 4)

@@ -22,10 +22,10 @@ from rssnav.discrete_states import Fluctuation
 from rssnav.kernels import particle_filter, searchers
 from rssnav.kernels.common import Moves
 from rssnav.kernels.particle_filter import Belief, Chart, Model
-from rssnav.kernels.searchers import Flight, Receiver
+from rssnav.kernels.searchers import FlightLog, Receiver
 from rssnav.learning_parameters import QLearning
 from rssnav.learning_rules import moves_of
-from rssnav.planning import path_length_m
+from rssnav.optimal_flights import path_length_m
 from rssnav.training import generator_states
 from rssnav.world import GridWorld
 
@@ -206,7 +206,7 @@ def search(
     def one(run: int) -> tuple[NDArray[np.int32], bool]:
         states = np.full(max_steps + 1, world.start_state, dtype=np.int32)
         generator = generator_states(seed, _STREAM + run)[:4].copy()
-        flight = Flight(states, np.zeros(1, dtype=np.int64), generator)
+        flight = FlightLog(states, np.zeros(1, dtype=np.int64), generator)
         claimed = fly(receiver_of(), flight)
         return states[: int(flight.seconds[0]) + 1].copy(), claimed
 
@@ -224,7 +224,7 @@ def search(
     )
 
 
-Fly = Callable[[Receiver, Flight], bool]
+Fly = Callable[[Receiver, FlightLog], bool]
 
 
 def _receivers(
@@ -253,7 +253,7 @@ def _flying(searcher: Searcher, world: GridWorld, moves: Moves) -> Fly:
     model = _model(searcher, world)
     count, size = searcher.particles, world.n_states
 
-    def track(receiver: Receiver, flight: Flight) -> bool:
+    def track(receiver: Receiver, flight: FlightLog) -> bool:
         belief = Belief(np.empty((count, 4)), np.empty(count), np.empty((count, 4)))
         hops, queue = np.empty(size, dtype=np.int32), np.empty(size, dtype=np.int32)
         chart = Chart(world.position, hops, queue)

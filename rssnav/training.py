@@ -21,7 +21,7 @@ from rssnav.agents import Agent
 from rssnav.kernels import common
 from rssnav.learning_parameters import QLearning
 from rssnav.learning_rules import LearningProblem
-from rssnav.planning import Path, greedy_path
+from rssnav.optimal_flights import Flight, greedy_path
 from rssnav.results import TrainingResult, padded
 from rssnav.schedule import NO_STEP_LIMIT, Schedule
 from rssnav.world import GridWorld
@@ -53,7 +53,7 @@ class _Realisation:
     counters: NDArray[np.int64]
     converged_cpu_s: float
     cpu_s: float
-    path: Path
+    flight: Flight
     n_discrete_states: int
     q: NDArray[np.float64] | None
 
@@ -234,7 +234,7 @@ class _Trainer:
             counters=counters,
             converged_cpu_s=converged_s,
             cpu_s=cpu_s,
-            path=greedy_path(self.world, process, q),
+            flight=greedy_path(self.world, process, q),
             n_discrete_states=learner.n_discrete_states(),
             q=q if self.keep_q else None,
         )
@@ -298,10 +298,10 @@ def _collect(
         converged_steps=counters[:, common.CONVERGED_STEPS],
         converged_cpu_s=np.array([r.converged_cpu_s for r in ordered]),
         cpu_s=np.array([r.cpu_s for r in ordered]),
-        trajectories=padded([r.path.cells for r in ordered], -1),
-        reached=np.array([r.path.reached for r in ordered]),
-        path_steps=np.array([r.path.steps for r in ordered], dtype=np.int64),
-        path_length_m=np.array([r.path.length_m for r in ordered]),
+        trajectories=padded([r.flight.cells for r in ordered], -1),
+        reached=np.array([r.flight.reached for r in ordered]),
+        path_steps=np.array([r.flight.steps for r in ordered], dtype=np.int64),
+        path_length_m=np.array([r.flight.length_m for r in ordered]),
         n_discrete_states=np.array([r.n_discrete_states for r in ordered], dtype=np.int64),
         q=np.stack([r.q for r in ordered if r.q is not None]) if ordered[0].q is not None else None,
     )

@@ -13,7 +13,7 @@ import floorplans
 import rssnav
 from raytrace import TraceConfig
 from rssnav.maps import make_map
-from rssnav.pictures.flight_movie import Flight, FlightScene
+from rssnav.pictures.flight_movie import FinalFlight, FlightScene
 from rssnav.pictures.style import drawing
 
 plan = floorplans.load("scenario2")
@@ -22,7 +22,7 @@ world = rssnav.GridWorld.from_map(plan, radio_map, speed=4)
 agent = rssnav.LocationAgent()
 result = rssnav.train(world, agent, runs=1, episodes=20_000, until_converged=True)
 
-flight = Flight.of(result)
+flight = FinalFlight.of(result)
 print(flight.label)
 
 # %%

@@ -9,7 +9,7 @@ from math import dist, radians, sin
 
 import shapely
 
-from floorplans.repair.moves import (
+from floorplans.repair.geometry import (
     Change,
     along_across,
     direction,

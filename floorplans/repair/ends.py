@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from floorplans.repair.moves import (
+from floorplans.repair.geometry import (
     Change,
     along_across,
     line_crossing,

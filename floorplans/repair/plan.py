@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from floorplans.checks.plan import building_faults
-from floorplans.repair.moves import at_text
+from floorplans.repair.geometry import at_text
 from floorplans.repair.walls import REACH_M, Change, repair_walls
 from floorplans.toml.writer import dumps
 from floorplans.unchecked import UncheckedPlan

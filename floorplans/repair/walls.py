@@ -23,7 +23,7 @@ from scipy.spatial import KDTree
 
 from floorplans.repair.collinear import merge_lines
 from floorplans.repair.ends import snap_ends
-from floorplans.repair.moves import Change, moved_wall, points_on_walls
+from floorplans.repair.geometry import Change, moved_wall, points_on_walls
 from floorplans.walls import TOLERANCE_M, Opening, Wall
 
 __all__ = ["Change", "RepairedWalls", "repair_walls", "split_at_junctions"]

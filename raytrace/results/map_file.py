@@ -19,8 +19,8 @@ from atomicfiles import atomic_write
 from raytrace.config import TraceConfig
 from raytrace.errors import MapFileError, MissingMapError
 from raytrace.grid import Grid
-from raytrace.radio.antenna_patterns import PatternTable
 from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
+from raytrace.radio.pattern_table import PatternTable
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.checked_hdf5 import LARGEST, Checked, Hdf5ContentError, open_checked
 from raytrace.results.hdf5 import hdf5_bytes, write_array

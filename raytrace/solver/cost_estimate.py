@@ -20,8 +20,8 @@ from raytrace.radio.transmitter import Transmitter
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import AHEAD
 from raytrace.solver.evaluation import evaluation_of
+from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
-from raytrace.solver.path_classes import path_classes
 from raytrace.solver.setup import prepare
 from raytrace.threads import n_threads
 

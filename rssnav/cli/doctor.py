@@ -17,7 +17,7 @@ from rssnav import GridWorld, LocationAgent, train
 from rssnav.cli.console import note, print_json, print_pairs
 from rssnav.cli.failures import COULD_NOT, complain
 from rssnav.cli.options import Json, examples
-from rssnav.kernel_cache import KernelCache, learning_cache, tracer_cache
+from rssnav.kernel_cache import CacheState, learning_cache, tracer_cache
 from rssnav.maps import make_map
 from rssnav.scenes import scene_of
 
@@ -51,11 +51,11 @@ def examine(as_json: Json = False) -> None:
         note("compiling kernels (first use only)")
     started_s = time.perf_counter()
     faults = [*_tracer_faults(), *_learning_faults()]
-    facts = _facts(caches, time.perf_counter() - started_s, faults)
+    summary = _summary(caches, time.perf_counter() - started_s, faults)
     if as_json:
-        print_json(facts)
+        print_json(summary)
     else:
-        _print(facts, caches)
+        _print(summary, caches)
     for fault in faults:
         complain(fault)
     if faults:
@@ -94,7 +94,7 @@ def _learning_faults() -> list[str]:
     return faults
 
 
-def _facts(caches: dict[str, KernelCache], test_s: float, faults: list[str]) -> dict[str, Any]:
+def _summary(caches: dict[str, CacheState], test_s: float, faults: list[str]) -> dict[str, Any]:
     return {
         "rssnav": version("rssnav"),
         "python": platform.python_version(),
@@ -116,22 +116,22 @@ def _facts(caches: dict[str, KernelCache], test_s: float, faults: list[str]) -> 
     }
 
 
-def _print(facts: dict[str, Any], caches: dict[str, KernelCache]) -> None:
+def _print(summary: dict[str, Any], caches: dict[str, CacheState]) -> None:
     print_pairs(
         [
-            ("rssnav", f"{facts['rssnav']} (tracer {facts['tracer_version']})"),
-            ("python", f"{facts['python']} on {facts['platform']}"),
-            *facts["libraries"].items(),
-            ("materials", facts["material_edition"]),
-            ("threads", facts["threads"]),
+            ("rssnav", f"{summary['rssnav']} (tracer {summary['tracer_version']})"),
+            ("python", f"{summary['python']} on {summary['platform']}"),
+            *summary["libraries"].items(),
+            ("materials", summary["material_edition"]),
+            ("threads", summary["threads"]),
             *((f"{name} kernels", _state(cache)) for name, cache in caches.items()),
-            ("self-test", f"{'failed' if facts['faults'] else 'passed'}, "
-                          f"{facts['self_test_s']:.1f} s"),
+            ("self-test", f"{'failed' if summary['faults'] else 'passed'}, "
+                          f"{summary['self_test_s']:.1f} s"),
         ]
     )  # fmt: skip
 
 
-def _state(cache: KernelCache) -> str:
+def _state(cache: CacheState) -> str:
     if cache.folder is None:
         return "compiled at every start: no folder for them can be written"
     if not cache.n_compiled:

@@ -16,7 +16,7 @@ from rssnav.cli.options import Json, Plan, Style, check_suffix, examples
 from rssnav.maps import require_map_for
 
 if TYPE_CHECKING:
-    from rssnav.pictures.flight_movie import Flight
+    from rssnav.pictures.flight_movie import FinalFlight
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -87,10 +87,10 @@ def fly(
     except MovieError as error:
         complain(str(error))
         raise typer.Exit(COULD_NOT) from error
-    _print({"file": str(output), "flights": [_facts(flight) for flight in flights]}, as_json)
+    _print({"file": str(output), "flights": [_summary(flight) for flight in flights]}, as_json)
 
 
-def _facts(flight: Flight) -> dict[str, Any]:
+def _summary(flight: FinalFlight) -> dict[str, Any]:
     return {
         "agent": flight.agent,
         "steps": len(flight.position) - 1,
@@ -99,20 +99,20 @@ def _facts(flight: Flight) -> dict[str, Any]:
     }
 
 
-def _print(facts: dict[str, Any], as_json: bool) -> None:
+def _print(summary: dict[str, Any], as_json: bool) -> None:
     if as_json:
-        print_json(facts)
+        print_json(summary)
         return
     print_pairs(
         [
-            ("film", facts["file"]),
+            ("film", summary["file"]),
             *(
                 (
                     f"{flight['agent']} agent",
                     f"{flight['length_m']:.1f} m in {flight['steps']} steps"
                     + ("" if flight["reached"] else "; it does not reach the source"),
                 )
-                for flight in facts["flights"]
+                for flight in summary["flights"]
             ),
         ]
     )

@@ -11,14 +11,14 @@ from floorplans import FloorPlan
 from rssnav.cli import plan_check, plan_export, plan_import, plan_new
 from rssnav.cli.console import print_json, print_table
 from rssnav.cli.options import PICTURE_SUFFIXES, Json, Plan, Style, check_suffix, examples
-from rssnav.cli.plan_facts import (
-    count_openings,
-    facts_of,
-    point_text,
-    print_facts,
-    size_text,
-)
 from rssnav.cli.plan_sketch import sketch
+from rssnav.cli.plan_summary import (
+    count_openings,
+    point_text,
+    print_summary,
+    size_text,
+    summary_of,
+)
 
 SOLID_SUFFIXES = (".html", ".glb")
 
@@ -42,7 +42,7 @@ def list_plans(as_json: Json = False) -> None:
     """List the built-in plans."""
     plans = [(name, floorplans.load(name)) for name in floorplans.builtin_names()]
     if as_json:
-        print_json([{"name": name, **facts_of(plan)} for name, plan in plans])
+        print_json([{"name": name, **summary_of(plan)} for name, plan in plans])
         return
     print_table(
         ("plan", ">size", ">height", ">walls", ">openings", "source", "start"),
@@ -104,7 +104,7 @@ def show(
     loaded = floorplans.load(plan)
     if output is None:
         print(sketch(loaded))
-        print_facts(loaded)
+        print_summary(loaded)
         return
     _draw(loaded, output, view, style)
     print(f"wrote {output}")

@@ -21,7 +21,7 @@ from floorplans.repair.walls import Change
 from floorplans.unchecked import PlanFile
 from rssnav.cli.console import note, print_json, print_table
 from rssnav.cli.options import Json, Plan, check_suffix, examples
-from rssnav.cli.plan_facts import facts_of, print_facts
+from rssnav.cli.plan_summary import print_summary, summary_of
 from rssnav.reachability import Reach, reaches, unreached
 from rssnav.scenes import scene_of
 
@@ -103,20 +103,20 @@ def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool)
     findings = list(inspect(file))
     errors = [finding for finding in findings if finding.severity == "error"]
     flights: tuple[Reach, ...] = ()
-    facts: dict[str, Any] = {"plan": plan}
+    summary: dict[str, Any] = {"plan": plan}
     if not errors:
         checked = FloorPlan.of(file.plan)
         scene_of(checked)
         flights = reaches(checked)
         findings += [finding for reach in flights if (finding := unreached(reach)) is not None]
-        facts |= facts_of(checked)
+        summary |= summary_of(checked)
     if as_json:
         report = {
             "flights": [_row(reach) for reach in flights],
             "findings": [asdict(finding) for finding in findings],
             "changes": [asdict(change) for change in changes],
         }
-        print_json(facts | report)
+        print_json(summary | report)
     elif errors:
         if len(findings) > 1:
             _print_findings(findings)
@@ -150,7 +150,7 @@ def _row(reach: Reach) -> dict[str, Any]:
 
 
 def _print_flights(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence[Finding]) -> None:
-    print_facts(plan)
+    print_summary(plan)
     print("\nshortest flight from the start to the source")
     print_table(
         (">speed", ">steps", ">length", ""),

@@ -12,7 +12,7 @@ from floorplans.importers import Imported, ImportOptions, import_plan
 from floorplans.repair.walls import Change
 from rssnav.cli.console import print_json, print_table
 from rssnav.cli.options import Json, check_suffix, examples
-from rssnav.cli.plan_facts import facts_of, print_facts
+from rssnav.cli.plan_summary import print_summary, summary_of
 
 LISTED_CHANGES = ("closed", "dropped", "raised")
 """Kinds of changes that are listed one by one; of the others the report gives the number."""
@@ -181,7 +181,7 @@ def _report(imported: Imported, output: Path, as_json: bool) -> None:
         print_json(
             {
                 "output": str(output),
-                **facts_of(imported.plan),
+                **summary_of(imported.plan),
                 "origin": asdict(imported.origin),
                 "layers": [asdict(use) for use in imported.layers],
                 "assumed": [asdict(assumption) for assumption in imported.assumed],
@@ -203,7 +203,7 @@ def _report(imported: Imported, output: Path, as_json: bool) -> None:
     _print_changes(imported.changes)
     for sentence in imported.notes:
         print(sentence)
-    print_facts(imported.plan)
+    print_summary(imported.plan)
     print(f"\nwrote {output}; see it with: rssnav plan show {output}")
 
 

@@ -106,11 +106,11 @@ def map_plan(
         )
     if picture is not None:
         _draw(loaded, radio_map, picture, style)
-    facts = _facts(radio_map, output, picture)
+    summary = _summary(radio_map, output, picture)
     if as_json:
-        print_json({"plan": plan, **facts})
+        print_json({"plan": plan, **summary})
     else:
-        _print_facts(facts)
+        _print_summary(summary)
 
 
 def map_scenarios(
@@ -156,7 +156,7 @@ def _draw(plan: FloorPlan, radio_map: RadioMap, picture: Path, style: str | None
         save_map_picture(plan, radio_map, picture)
 
 
-def _facts(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[str, Any]:
+def _summary(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[str, Any]:
     covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
     return {
         "file": str(output),
@@ -174,18 +174,18 @@ def _facts(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[str,
     }
 
 
-def _print_facts(facts: dict[str, Any]) -> None:
-    n_y, n_x = facts["shape"]
+def _print_summary(summary: dict[str, Any]) -> None:
+    n_y, n_x = summary["shape"]
     rss = "no cell has a path"
-    if facts["rss_dbm_min"] is not None:
-        rss = f"{facts['rss_dbm_min']:.2f} to {facts['rss_dbm_max']:.2f} dBm"
+    if summary["rss_dbm_min"] is not None:
+        rss = f"{summary['rss_dbm_min']:.2f} to {summary['rss_dbm_max']:.2f} dBm"
     pairs = [
-        ("map", facts["file"]),
-        ("cells", f"{n_x} x {n_y}, {facts['cells_without_path']} of them without a path"),
+        ("map", summary["file"]),
+        ("cells", f"{n_x} x {n_y}, {summary['cells_without_path']} of them without a path"),
         ("RSS", rss),
-        ("paths", f"{facts['paths']:,}".replace(",", " ")),
-        ("tracing", f"{facts['tracing_s']:.1f} s"),
+        ("paths", f"{summary['paths']:,}".replace(",", " ")),
+        ("tracing", f"{summary['tracing_s']:.1f} s"),
     ]
-    if facts["picture"] is not None:
-        pairs.append(("picture", facts["picture"]))
+    if summary["picture"] is not None:
+        pairs.append(("picture", summary["picture"]))
     print_pairs(pairs)

@@ -186,11 +186,11 @@ def train_agent(
         output,
     )
     result = job.run(None if force else job.earlier(), threads)
-    facts = _facts(result)
+    summary = _summary(result)
     if as_json:
-        print_json({"plan": plan, "map": str(map_file), **facts})
+        print_json({"plan": plan, "map": str(map_file), **summary})
     else:
-        _print(facts, output)
+        _print(summary, output)
 
 
 def _learning(**parameters: Any) -> QLearning:
@@ -307,7 +307,7 @@ class _Job:
         return f"{done} and kept in {self._output}; the same command continues from there"
 
 
-def _facts(result: TrainingResult) -> dict[str, Any]:
+def _summary(result: TrainingResult) -> dict[str, Any]:
     """Summary of a training; flights are the final greedy ones that reach the source."""
     world, converged = result.world, result.converged_episode >= 0
     terminal = result.agent.decision_process(world, result.learning).terminal
@@ -341,29 +341,29 @@ def _spread(values: NDArray[Any]) -> dict[str, float] | None:
     return {"mean": float(values.mean()), "min": float(values.min()), "max": float(values.max())}
 
 
-def _print(facts: dict[str, Any], output: Path | None) -> None:
-    runs = facts["runs"]
+def _print(summary: dict[str, Any], output: Path | None) -> None:
+    runs = summary["runs"]
     pairs = [
-        ("agent", f"{facts['agent']}, speed {facts['speed']}, {facts['states']} cells"),
-        ("runs", f"{runs} of {_text(facts['episodes'])} episodes, seed {facts['seed']}"),
-        ("states", _text(facts["labels"])),
-        ("truncated episodes", facts["truncated_episodes"]),
-        ("CPU time", f"{facts['cpu_s']:.1f} s"),
-        ("converged", f"{facts['converged_runs']} of {runs}"),
+        ("agent", f"{summary['agent']}, speed {summary['speed']}, {summary['states']} cells"),
+        ("runs", f"{runs} of {_text(summary['episodes'])} episodes, seed {summary['seed']}"),
+        ("states", _text(summary["labels"])),
+        ("truncated episodes", summary["truncated_episodes"]),
+        ("CPU time", f"{summary['cpu_s']:.1f} s"),
+        ("converged", f"{summary['converged_runs']} of {runs}"),
     ]
-    if facts["converged_runs"]:
+    if summary["converged_runs"]:
         pairs += [
-            ("  after", f"{_text(facts['converged_episode'])} episodes"),
-            ("  flown", f"{_text(facts['converged_flight_s'])} s"),
-            ("  CPU time", f"{_text(facts['converged_cpu_s'], 2)} s a run"),
+            ("  after", f"{_text(summary['converged_episode'])} episodes"),
+            ("  flown", f"{_text(summary['converged_flight_s'])} s"),
+            ("  CPU time", f"{_text(summary['converged_cpu_s'], 2)} s a run"),
         ]
     pairs += [
-        ("final flight", f"{facts['reached_runs']} of {runs} reach the source"),
-        ("  steps", f"{_text(facts['path_steps'])}; fewest possible {facts['fewest_steps']}"),
+        ("final flight", f"{summary['reached_runs']} of {runs} reach the source"),
+        ("  steps", f"{_text(summary['path_steps'])}; fewest possible {summary['fewest_steps']}"),
         (
             "  length",
-            f"{_text(facts['path_length_m'], 2)} m; "
-            f"shortest possible {facts['shortest_length_m']:.2f} m",
+            f"{_text(summary['path_length_m'], 2)} m; "
+            f"shortest possible {summary['shortest_length_m']:.2f} m",
         ),
     ]
     print_pairs(pairs)

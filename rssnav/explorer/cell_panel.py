@@ -44,7 +44,7 @@ class CellPanel:
         if finder.problem:
             self._table.object = problem(finder.problem)
         elif finder.latest is not None:
-            self._table.object = _facts(finder.latest) + _rows(finder.latest)
+            self._table.object = _summary(finder.latest) + _rows(finder.latest)
         else:
             self._table.object = "<p>Tracing the paths ...</p>" if finder.busy else _INVITATION
 
@@ -71,7 +71,7 @@ def page_3d(plan: FloorPlan, found: CellPaths | None) -> str:
     return f'<iframe title="3D" sandbox="allow-scripts" srcdoc="{page}" style="{style}"></iframe>'
 
 
-def _facts(found: CellPaths) -> str:
+def _summary(found: CellPaths) -> str:
     x, y, z = found.receiver
     spread_s = float(found.statistics.delay_spread_s[0])
     return pairs(

@@ -19,7 +19,7 @@ from rssnav.explorer.tracing import TracedMap
 from rssnav.kernels import common
 from rssnav.learning_parameters import QLearning
 from rssnav.learning_rules import Learner, LearningProblem
-from rssnav.planning import shortest_path
+from rssnav.optimal_flights import shortest_path
 from rssnav.training import generator_states
 from rssnav.world import GridWorld, WorldError
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rssnav.kernels.common import Moves
 from rssnav.kernels.compiling import jit
-from rssnav.kernels.searchers import Flight, Receiver, is_over, read, spend_second
+from rssnav.kernels.searchers import FlightLog, Receiver, is_over, read, spend_second
 from rssnav.kernels.xoshiro import draw, gaussian, unit_from_high_bits
 
 X, Y, POWER, EXPONENT = range(4)
@@ -176,7 +176,7 @@ def _nearer(moves: Moves, hops: NDArray[np.int32], state: int) -> int:
 
 @jit()
 def track(
-    moves: Moves, receiver: Receiver, flight: Flight, model: Model, belief: Belief, chart: Chart
+    moves: Moves, receiver: Receiver, flight: FlightLog, model: Model, belief: Belief, chart: Chart
 ) -> bool:
     """Fly by the belief until a reading finds the transmitter or the time is up.
 

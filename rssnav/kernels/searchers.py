@@ -26,7 +26,7 @@ class Receiver(NamedTuple):
     found_dbm: float  # a reading above it means that the transmitter is found
 
 
-class Flight(NamedTuple):
+class FlightLog(NamedTuple):
     """A flight in progress."""
 
     states: NDArray[np.int32]  # (max_steps + 1,) the start first
@@ -47,20 +47,20 @@ def read(receiver: Receiver, generator: NDArray[np.uint64], state: int) -> float
 
 
 @jit(inline="always")
-def is_over(flight: Flight) -> bool:
+def is_over(flight: FlightLog) -> bool:
     """Whether the time is up."""
     return flight.seconds[0] + 1 == flight.states.size
 
 
 @jit(inline="always")
-def spend_second(flight: Flight, state: int) -> None:
+def spend_second(flight: FlightLog, state: int) -> None:
     """Log the state after another second."""
     flight.seconds[0] += 1
     flight.states[flight.seconds[0]] = state
 
 
 @jit()
-def random_step(moves: Moves, flight: Flight, state: int) -> int:
+def random_step(moves: Moves, flight: FlightLog, state: int) -> int:
     """Fly one of the possible steps, each with the same probability."""
     pick = index_from_low_bits(draw(flight.generator), np.uint64(moves.n_possible[state]))
     arrived = int(moves.next_state[8 * state + moves.possible[8 * state + int(pick)]])
@@ -69,7 +69,7 @@ def random_step(moves: Moves, flight: Flight, state: int) -> int:
 
 
 @jit()
-def walk(moves: Moves, receiver: Receiver, flight: Flight, steps: int) -> bool:
+def walk(moves: Moves, receiver: Receiver, flight: FlightLog, steps: int) -> bool:
     """Fly random steps on; returns whether a reading found the transmitter."""
     state = int(flight.states[flight.seconds[0]])
     for _ in range(steps):
@@ -82,7 +82,7 @@ def walk(moves: Moves, receiver: Receiver, flight: Flight, steps: int) -> bool:
 
 
 @jit()
-def _mean_reading(receiver: Receiver, flight: Flight, readings: int) -> float:
+def _mean_reading(receiver: Receiver, flight: FlightLog, readings: int) -> float:
     """Mean of readings where the flight is, one a second, the first of them on arrival [dBm]."""
     state = int(flight.states[flight.seconds[0]])
     total, taken = read(receiver, flight.generator, state), 1
@@ -95,7 +95,7 @@ def _mean_reading(receiver: Receiver, flight: Flight, readings: int) -> float:
 
 @jit()
 def _shuffle(
-    moves: Moves, flight: Flight, state: int, heading: int, order: NDArray[np.int64]
+    moves: Moves, flight: FlightLog, state: int, heading: int, order: NDArray[np.int64]
 ) -> int:
     """Fill ``order`` with the possible actions, the heading first; returns how many there are."""
     count = int(moves.n_possible[state])
@@ -113,7 +113,7 @@ def _shuffle(
 def _climb(
     moves: Moves,
     receiver: Receiver,
-    flight: Flight,
+    flight: FlightLog,
     readings: int,
     level_dbm: float,
     heading: int,
@@ -139,7 +139,7 @@ def _climb(
 
 @jit(allocates=True)
 def ascend(
-    moves: Moves, receiver: Receiver, flight: Flight, readings: int, escape_steps: int
+    moves: Moves, receiver: Receiver, flight: FlightLog, readings: int, escape_steps: int
 ) -> bool:
     """Climb the mean reading to the goal; from a local maximum escape at random, or give up.
 

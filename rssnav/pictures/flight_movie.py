@@ -60,7 +60,7 @@ class MovieError(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class Flight:
+class FinalFlight:
     """The final flight of one realisation.
 
     Attributes
@@ -84,7 +84,7 @@ class Flight:
     reached: bool
 
     @classmethod
-    def of(cls, result: TrainingResult, run: int | None = None) -> Flight:
+    def of(cls, result: TrainingResult, run: int | None = None) -> FinalFlight:
         """Take a realisation's flight from a training.
 
         Parameters
@@ -131,7 +131,9 @@ class FlightScene:
     Map, axes and legend are drawn once, and the flights on a copy of them.
     """
 
-    def __init__(self, plan: FloorPlan, radio_map: RadioMap, flights: Sequence[Flight]) -> None:
+    def __init__(
+        self, plan: FloorPlan, radio_map: RadioMap, flights: Sequence[FinalFlight]
+    ) -> None:
         self._flights = flights
         self.n_steps = max(len(flight.position) for flight in flights) - 1
         figure, (above, below) = _panels(plan)
@@ -184,14 +186,14 @@ def _panels(plan: FloorPlan) -> tuple[Figure, tuple[Axes, Axes]]:
     return figure, (above, below)
 
 
-def _draw_readings(ax: Axes, flight: Flight) -> Line2D:
+def _draw_readings(ax: Axes, flight: FinalFlight) -> Line2D:
     (line,) = ax.plot(
         flight.rss_dbm, color=agent_colour(flight.agent), label=flight.label, gid="readings"
     )
     return line
 
 
-def _draw_uav(ax: Axes, flight: Flight) -> Line2D:
+def _draw_uav(ax: Axes, flight: FinalFlight) -> Line2D:
     (mark,) = ax.plot(
         *flight.position[:1].T,
         marker="o",
@@ -204,7 +206,7 @@ def _draw_uav(ax: Axes, flight: Flight) -> Line2D:
     return mark
 
 
-def _set_up_readings(ax: Axes, flights: Sequence[Flight], n_steps: int) -> None:
+def _set_up_readings(ax: Axes, flights: Sequence[FinalFlight], n_steps: int) -> None:
     finite = np.concatenate([f.rss_dbm[np.isfinite(f.rss_dbm)] for f in flights])
     ax.set_xlim(0, max(n_steps, 1))
     if finite.size:
@@ -223,7 +225,7 @@ def save_flight_movie(
     run: int | None = None,
     frames_per_s: int = FRAMES_PER_S,
     progress: Progress | None = None,
-) -> tuple[Flight, ...]:
+) -> tuple[FinalFlight, ...]:
     """Write the flights of one or more trainings as a film, and return them.
 
     Parameters
@@ -251,7 +253,7 @@ def save_flight_movie(
     """
     _check_format(Path(path))
     _check_plan(plan, results)
-    flights = tuple(Flight.of(result, run) for result in results)
+    flights = tuple(FinalFlight.of(result, run) for result in results)
     with drawing():
         scene = FlightScene(plan, radio_map, flights)
         steps = [*range(scene.n_steps + 1), *[scene.n_steps] * round(HOLD_S * frames_per_s)]

@@ -3,7 +3,7 @@
     python tests/benchmarks/peers.py --sionna PYTHON
 
 traces the flat and a small office to receivers drawn at random, path by path, and writes the
-tables into docs/performance.md. rssnav's paths are those of the brute force (tests/reference.py);
+tables into docs/performance.md. rssnav's paths are those of the brute force (tests/brute_force.py);
 the tables count how many of them the others find, and their spurious paths. PYTHON
 has sionna-rt, which needs libLLVM 17 or newer; without it the tables lack Sionna RT.
 """
@@ -27,8 +27,8 @@ from scipy.spatial import cKDTree
 from floorplans.exporters import ExportOptions, export
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from reference import Facets, Found
-from reference_field import Radio, path_gains
+from brute_force import Facets, Found
+from brute_force_field import Radio, path_gains
 
 from raytrace import Isotropic, Transmitter
 
@@ -213,10 +213,10 @@ receivers, with up to three reflections, or two reflections and a diffraction, a
 vertically polarised isotropic antennas. The tracers are rssnav, Sionna RT (CPU, a million rays, no
 transmission) and pyroomacoustics, which has neither diffraction nor fields. Each runs twice in its
 own process; the second run is timed. *Found* and *missed* count rssnav's paths, which are those of
-the brute force in `tests/reference.py`; *spurious* are paths beyond those, *duplicate* are repeated
-ones. The last columns compare the gains of found paths with the textbook formulas (slabs, and
-Kouyoumjian and Pathak's wedge; `tests/reference_field.py`). Sionna RT's diffraction term has a
-wrong sign."""
+the brute force in `tests/brute_force.py`; *spurious* are paths beyond those, *duplicate* are
+repeated ones. The last columns compare the gains of found paths with the textbook formulas (slabs,
+and Kouyoumjian and Pathak's wedge; `tests/brute_force_field.py`). Sionna RT's diffraction term has
+a wrong sign."""
 
 
 if __name__ == "__main__":

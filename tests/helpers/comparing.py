@@ -1,9 +1,9 @@
 """The tracer's paths beside the brute force's."""
 
 import numpy as np
+from brute_force import Facets, Found, find_paths
 from buildings import Building
 from numpy.typing import NDArray
-from reference import Facets, Found, find_paths
 from scipy.spatial import cKDTree
 
 from raytrace import Paths, TraceConfig, Transmitter, trace_paths

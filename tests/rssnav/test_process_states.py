@@ -25,7 +25,7 @@ from rssnav import (
 )
 from rssnav.kernels import common
 from rssnav.learning_rules import LEARNERS, LearningProblem
-from rssnav.planning import path_length_m
+from rssnav.optimal_flights import path_length_m
 from rssnav.training import generator_states
 
 LEARNING = QLearning(gamma=0.95, eta=1e-4, initial_q=200.0, max_steps=500)

@@ -38,7 +38,7 @@ from floorplans.importers.imported import Assumption, Imported
 from floorplans.materials import MATERIALS
 from floorplans.plan import FloorPlan
 from floorplans.repair.collinear import merge_lines
-from floorplans.repair.moves import DECIMALS, Change, tidy_point
+from floorplans.repair.geometry import DECIMALS, Change, tidy_point
 from floorplans.repair.walls import REACH_M, repair_walls
 from floorplans.walls import TOLERANCE_M, Wall
 

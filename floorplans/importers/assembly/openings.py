@@ -21,7 +21,7 @@ from floorplans.importers.defaults import (
     WINDOW_THICKNESS_M,
 )
 from floorplans.importers.draft import RawOpening
-from floorplans.repair.moves import (
+from floorplans.repair.geometry import (
     DECIMALS,
     Change,
     along_across,

@@ -14,7 +14,7 @@ from shapely.geometry import MultiPoint, Polygon
 
 from floorplans.errors import PlanError
 from floorplans.importers.assembly.outline_gaps import gap_links, link_lengths
-from floorplans.repair.moves import Change
+from floorplans.repair.geometry import Change
 from floorplans.repair.walls import split_at_junctions
 from floorplans.walls import TOLERANCE_M, Wall, centre_lines
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import hypot
 
 from floorplans.importers.draft import RawOpening
-from floorplans.repair.moves import along_across, direction
+from floorplans.repair.geometry import along_across, direction
 from floorplans.walls import Opening, Point, Wall
 
 LEAF_GAP_M = 0.15

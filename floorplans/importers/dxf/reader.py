@@ -25,8 +25,8 @@ from floorplans.importers.centrelines.align import aligned_to_main_directions, a
 from floorplans.importers.centrelines.areas import MAX_THICKNESS_M, walls_of_area
 from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
-from floorplans.importers.centrelines.materials import by_material, without_openings
 from floorplans.importers.centrelines.parallel_lines import strips_of_lines
+from floorplans.importers.centrelines.split_by_material import by_material, without_openings
 from floorplans.importers.centrelines.spurious import without_spurious_walls
 from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall

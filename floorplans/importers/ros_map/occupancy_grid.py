@@ -30,7 +30,7 @@ Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class MapFacts:
+class MapMetadata:
     """Contents of a map's YAML file; the defaults are map_server's.
 
     Attributes
@@ -63,13 +63,13 @@ class OccupancyGrid:
     ----------
     occupied, free : (n_y, n_x) bool
         Other pixels are unknown.
-    facts : MapFacts
+    metadata : MapMetadata
     notes : tuple of str
     """
 
     occupied: Mask
     free: Mask
-    facts: MapFacts
+    metadata: MapMetadata
     notes: tuple[str, ...] = ()
 
 
@@ -95,30 +95,28 @@ def read_grid(path: Path, scale_m: float | None) -> OccupancyGrid:
     if scale_m is not None and not (isfinite(scale_m) and scale_m > 0):
         raise PlanError("expected a length above 0 [m]", ("scale",), scale_m)
     if path.suffix.lower() in YAMLS:
-        facts, notes = _read_facts(path), ()
-        picture = _picture_of(path, facts.image)
+        metadata, notes = _read_metadata(path), ()
+        picture = _picture_of(path, metadata.image)
     else:
-        facts, notes = _facts_beside(path, scale_m)
+        metadata, notes = _metadata_beside(path, scale_m)
         picture = path
     if scale_m is not None:
-        facts = replace(facts, resolution_m=scale_m)
-    occupied, free = _classified(_read_picture(picture), facts)
+        metadata = replace(metadata, resolution_m=scale_m)
+    occupied, free = _classified(_read_picture(picture), metadata)
     if not occupied.any():
         raise PlanError("no pixel is occupied, so there is no wall", origin=str(picture))
-    return OccupancyGrid(occupied[::-1], free[::-1], facts, notes)
+    return OccupancyGrid(occupied[::-1], free[::-1], metadata, notes)
 
 
-def _facts_beside(picture: Path, scale_m: float | None) -> tuple[MapFacts, tuple[str, ...]]:
+def _metadata_beside(picture: Path, scale_m: float | None) -> tuple[MapMetadata, tuple[str, ...]]:
     beside = [picture.with_suffix(ending) for ending in YAMLS]
     for path in beside:
         if path.is_file():
-            facts = _read_facts(path)
-            if Path(facts.image).name == picture.name:
-                return facts, ()
-            note = (
-                f"{path.name} names the picture {facts.image}; it is taken to mean {picture.name}"
-            )
-            return facts, (note,)
+            metadata = _read_metadata(path)
+            if Path(metadata.image).name == picture.name:
+                return metadata, ()
+            note = f"{path.name} names the picture {metadata.image}; it is read as {picture.name}"
+            return metadata, (note,)
     if scale_m is None:
         raise PlanError(
             f"the size of a pixel is not known: there is no {beside[0].name} beside the picture; "
@@ -126,7 +124,7 @@ def _facts_beside(picture: Path, scale_m: float | None) -> tuple[MapFacts, tuple
             origin=str(picture),
             remedy="scale_m",
         )
-    return MapFacts(picture.name, scale_m), ()
+    return MapMetadata(picture.name, scale_m), ()
 
 
 def _picture_of(path: Path, image: str) -> Path:
@@ -148,7 +146,7 @@ def _picture_of(path: Path, image: str) -> Path:
     return picture
 
 
-def _read_facts(path: Path) -> MapFacts:
+def _read_metadata(path: Path) -> MapMetadata:
     try:
         if path.stat().st_size > MAX_YAML_BYTES:
             raise PlanError("the file is too long to be a map's YAML file", origin=str(path))
@@ -161,12 +159,12 @@ def _read_facts(path: Path) -> MapFacts:
     if not isinstance(data, dict):
         raise PlanError("expected the keys image, resolution and origin", origin=str(path))
     try:
-        return _facts(cast("Mapping[str, Any]", data))
+        return _metadata(cast("Mapping[str, Any]", data))
     except PlanError as error:
         raise error.located(str(path)) from None
 
 
-def _facts(data: Mapping[str, Any]) -> MapFacts:
+def _metadata(data: Mapping[str, Any]) -> MapMetadata:
     image = data.get("image")
     if not isinstance(image, str):
         raise PlanError("expected the name of the picture", ("image",))
@@ -185,7 +183,7 @@ def _facts(data: Mapping[str, Any]) -> MapFacts:
         raise PlanError("expected [x, y, yaw] in metres and radians", ("origin",))
     x, y, yaw = (_number(number, "origin") for number in cast("list[object]", origin))
     negate = bool(_number(data.get("negate", 0), "negate"))
-    return MapFacts(image, resolution_m, (x, y, yaw), negate, occupied, free, mode)
+    return MapMetadata(image, resolution_m, (x, y, yaw), negate, occupied, free, mode)
 
 
 def _number(value: object, key: str) -> float:
@@ -216,7 +214,7 @@ def _read_picture(path: Path) -> Image.Image:
     return picture
 
 
-def _classified(picture: Image.Image, facts: MapFacts) -> tuple[Mask, Mask]:
+def _classified(picture: Image.Image, metadata: MapMetadata) -> tuple[Mask, Mask]:
     """Return which pixels are occupied and which are free; the first row is the top one."""
     seen = np.ones((picture.height, picture.width), dtype=np.bool_)
     if "A" in picture.getbands():
@@ -225,9 +223,9 @@ def _classified(picture: Image.Image, facts: MapFacts) -> tuple[Mask, Mask]:
         values = np.asarray(picture, dtype=np.float64) / 65535.0
     else:
         values = np.asarray(picture.convert("L"), dtype=np.float64) / 255.0
-    if facts.mode == "raw":
+    if metadata.mode == "raw":
         likely = values * 2.55
         seen &= likely <= 1.0
     else:
-        likely = values if facts.negate else 1.0 - values
-    return seen & (likely > facts.occupied_thresh), seen & (likely < facts.free_thresh)
+        likely = values if metadata.negate else 1.0 - values
+    return seen & (likely > metadata.occupied_thresh), seen & (likely < metadata.free_thresh)

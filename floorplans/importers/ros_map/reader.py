@@ -20,7 +20,7 @@ from shapely.geometry import LineString, MultiPoint, Polygon
 from floorplans.errors import PlanError
 from floorplans.importers.centrelines.areas import block_walls, box_sides
 from floorplans.importers.draft import Draft, ImportOptions, LayerUse, RawWall
-from floorplans.importers.ros_map.occupancy_grid import MapFacts, Mask, read_grid
+from floorplans.importers.ros_map.occupancy_grid import MapMetadata, Mask, read_grid
 from floorplans.importers.ros_map.vectorise import walls_of_picture
 from floorplans.importers.units import BUILDING_M
 
@@ -65,7 +65,7 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
         When a file cannot be read, or contains no wall.
     """
     grid = read_grid(path, options.scale_m)
-    pixel_m = grid.facts.resolution_m
+    pixel_m = grid.metadata.resolution_m
     _check_extent(grid.occupied, pixel_m)
     tolerance_px = options.tolerance_m / pixel_m if options.tolerance_m else TOLERANCE_PX
     sorted_ = _sort(grid.occupied, pixel_m)
@@ -75,7 +75,7 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
     rings = [side for shape in sorted_.obstacles for side in _ring(shape, min(tolerance_px, 1.0))]
     return Draft(
         name=path.stem,
-        walls=tuple(_in_metres(wall, grid.facts) for wall in (*walls, *rings)),
+        walls=tuple(_in_metres(wall, grid.metadata) for wall in (*walls, *rings)),
         layers=(
             LayerUse("occupied pixels", int(grid.occupied.sum()), f"{len(walls)} walls"),
             LayerUse("obstacles", len(sorted_.obstacles), "rings of walls"),
@@ -151,12 +151,12 @@ def _ring(hull: Polygon, tolerance_px: float) -> list[RawWall]:
     return block_walls(Polygon(shapely.get_coordinates(grown)))
 
 
-def _in_metres(wall: RawWall, facts: MapFacts) -> RawWall:
+def _in_metres(wall: RawWall, metadata: MapMetadata) -> RawWall:
     """Transform a wall from pixels to the map's frame."""
-    x0, y0, yaw = facts.origin
-    turn = np.array([[cos(yaw), sin(yaw)], [-sin(yaw), cos(yaw)]]) * facts.resolution_m
+    x0, y0, yaw = metadata.origin
+    turn = np.array([[cos(yaw), sin(yaw)], [-sin(yaw), cos(yaw)]]) * metadata.resolution_m
     (a, b), (c, d) = (np.array([wall.start, wall.end]) @ turn + np.array([x0, y0])).tolist()
-    return RawWall((a, b), (c, d), (wall.thickness_m or 1.0) * facts.resolution_m)
+    return RawWall((a, b), (c, d), (wall.thickness_m or 1.0) * metadata.resolution_m)
 
 
 def _deviation(

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rssnav.agents import Agent, LocationAgent, RssAgent
 from rssnav.experiments.paper.first_episodes import FirstEpisodes
 from rssnav.experiments.paper.scenarios import PLANS, SPEEDS, Scenario
-from rssnav.planning import Path, shortest_path
+from rssnav.optimal_flights import Flight, shortest_path
 from rssnav.results import TrainingResult
 from rssnav.world import GridWorld
 
@@ -105,12 +105,12 @@ class PaperData:
         return next(iter(self.results.values())).run_ids.size
 
     @cached_property
-    def shortest_in_metres(self) -> dict[tuple[int, int], Path]:
+    def shortest_in_metres(self) -> dict[tuple[int, int], Flight]:
         """Shortest flight in metres, by (scenario, speed)."""
         return {key: shortest_path(*world, "metres") for key, world in self._worlds().items()}
 
     @cached_property
-    def shortest_in_steps(self) -> dict[tuple[int, int], Path]:
+    def shortest_in_steps(self) -> dict[tuple[int, int], Flight]:
         """Shortest flight in steps, by (scenario, speed); of several, the shortest in metres."""
         return {key: shortest_path(*world, "steps") for key, world in self._worlds().items()}
 

@@ -18,7 +18,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from atomicfiles import atomic_write
 
 if TYPE_CHECKING:
-    from rssnav.experiments.paper.claims import Finding
+    from rssnav.experiments.paper.claims import ClaimResult
     from rssnav.experiments.paper.provenance import Record
     from rssnav.experiments.tables import Table
 
@@ -63,7 +63,7 @@ class Report:
         Figures in the paper's order.
     tables : tuple of Table
         Tables of results, in the paper's order.
-    findings : tuple of Finding
+    findings : tuple of ClaimResult
         Claims with their verdicts.
     settings : tuple of Table
         Interpretation and parameters.
@@ -75,7 +75,7 @@ class Report:
 
     pictures: tuple[Picture, ...]
     tables: tuple[Table, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[ClaimResult, ...]
     settings: tuple[Table, ...]
     scenarios: dict[str, dict[str, Any]]
     record: Record
@@ -144,7 +144,7 @@ def save_summary(report: Report, path: Path) -> None:
         beside.write_text(text + "\n", encoding="utf-8")
 
 
-def _claim(finding: Finding) -> dict[str, Any]:
+def _claim(finding: ClaimResult) -> dict[str, Any]:
     return {
         "key": finding.claim.key,
         "paper": finding.claim.paper,

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rssnav.experiments.paper import trainings
-from rssnav.experiments.paper.claims import Finding, claims_table, examine
+from rssnav.experiments.paper.claims import ClaimResult, claims_table, examine
 from rssnav.experiments.paper.data import (
     CONFIGURATIONS,
     SHOWN_EPISODES,
@@ -47,7 +47,7 @@ class Paper:
         Plans, maps and trainings.
     tables : tuple of Table
         Its tables.
-    findings : tuple of Finding
+    findings : tuple of ClaimResult
         Claims with their verdicts.
     record : Record
         How the run was made.
@@ -56,7 +56,7 @@ class Paper:
     report: Path
     data: PaperData
     tables: tuple[Table, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[ClaimResult, ...]
     record: Record
 
 

@@ -1,12 +1,14 @@
 """Studies beyond the paper: its open choices, RSS that fluctuates, other methods.
 
-Each study is a package or module that describes itself as a ``STUDY``;
+Each study is a package whose module ``study`` describes it as ``STUDY``;
 :func:`~rssnav.experiments.studies.study.run_study` runs any of them.
 """
 
 from typing import Any
 
-from rssnav.experiments.studies import comparison, noise, sensitivity
+from rssnav.experiments.studies.comparison import study as comparison
+from rssnav.experiments.studies.noise import study as noise
+from rssnav.experiments.studies.sensitivity import study as sensitivity
 from rssnav.experiments.studies.study import Study, StudyResult, run_study
 
 STUDIES: dict[str, Study[Any, Any]] = {

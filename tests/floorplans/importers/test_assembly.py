@@ -32,8 +32,8 @@ from floorplans.importers.assembly.source_and_start import CELL_M, choose_source
 from floorplans.importers.centrelines.align import aligned_to_main_directions, along_walls
 from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
-from floorplans.importers.centrelines.materials import by_material
 from floorplans.importers.centrelines.parallel_lines import strips_of_lines
+from floorplans.importers.centrelines.split_by_material import by_material
 from floorplans.importers.units import guess_unit
 from floorplans.walls import Wall
 

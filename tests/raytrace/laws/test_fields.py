@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from brute_force_field import Radio, path_gains
 from comparing import as_found, facets_of, off_ties
-from reference_field import Radio, path_gains
 from rooms import ROOMS, SOURCE
 
 from raytrace import (

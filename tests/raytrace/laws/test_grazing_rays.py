@@ -11,7 +11,7 @@ from raytrace import HalfWaveDipole, Scene, TraceConfig, Transmitter
 from raytrace.kernels.sums import Sums
 from raytrace.solver.accumulate import sum_paths
 from raytrace.solver.evaluation import evaluation_of
-from raytrace.solver.path_classes import path_classes
+from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.setup import prepare
 
 Floats = NDArray[np.float64]

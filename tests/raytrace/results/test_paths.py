@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapely
+from brute_force import find_paths
 from buildings import GLASS, Building, door, ring, wall, window
 from comparing import (
     Facets,
@@ -14,7 +15,6 @@ from comparing import (
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from reference import find_paths
 from rooms import L_SHAPE, ROOMS, SLANTED, SOURCE
 
 import floorplans

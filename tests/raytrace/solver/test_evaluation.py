@@ -12,8 +12,8 @@ from raytrace.kernels.sums import Sums
 from raytrace.radio.materials import Slab
 from raytrace.solver.accumulate import sum_paths
 from raytrace.solver.evaluation import evaluation_of
+from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
-from raytrace.solver.path_classes import path_classes
 from raytrace.solver.setup import prepare
 
 ROOM = ROOMS["glass window and door"]

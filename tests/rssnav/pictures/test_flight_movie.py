@@ -15,7 +15,7 @@ import floorplans
 from raytrace import TraceConfig
 from rssnav import GridWorld, LocationAgent, ResultFileError, RssAgent, train
 from rssnav.maps import make_map
-from rssnav.pictures.flight_movie import Flight, FlightScene, MovieError, save_flight_movie
+from rssnav.pictures.flight_movie import FinalFlight, FlightScene, MovieError, save_flight_movie
 from rssnav.pictures.style import AGENT_COLOURS
 
 
@@ -58,7 +58,7 @@ def test_the_film_has_a_frame_a_step_and_the_agents_colours(room, radio_map, tra
 
 
 def test_the_trail_grows_with_every_step(room, radio_map, trained):
-    flight = Flight.of(trained[0])
+    flight = FinalFlight.of(trained[0])
     scene = FlightScene(room, radio_map, [flight])
     grown = [pixels_of(scene.frame(step).astype(float), "rss") for step in range(4)]
     assert grown == sorted(grown)
@@ -69,12 +69,12 @@ def test_the_trail_grows_with_every_step(room, radio_map, trained):
 
 def test_a_flight_is_that_of_its_run(trained):
     result = trained[0]
-    flight = Flight.of(result, run=2)
+    flight = FinalFlight.of(result, run=2)
     assert np.array_equal(flight.position, result.trajectory_m(2))
     assert flight.length_m == result.path_length_m[2]
     assert flight.rss_dbm.shape == (len(flight.position),)
     with pytest.raises(MovieError, match="run 3: the training has runs 0 to 2"):
-        Flight.of(result, run=3)
+        FinalFlight.of(result, run=3)
 
 
 def test_formats_that_cannot_be_written_are_refused(room, radio_map, trained, tmp_path):

@@ -6,22 +6,22 @@ To add one, list it in the module of its subject; a new subject gets a module, l
 from collections.abc import Sequence
 
 from rssnav.experiments.paper.claims import convergence, flights, learning
-from rssnav.experiments.paper.claims.verdicts import Case, Claim, Finding, Verdict
+from rssnav.experiments.paper.claims.verdicts import Case, Claim, ClaimResult, Verdict
 from rssnav.experiments.paper.data import PaperData
 from rssnav.experiments.tables import Cell, Column, Table
 
 CLAIMS: tuple[Claim, ...] = (*flights.CLAIMS, *learning.CLAIMS, *convergence.CLAIMS)
 """All claims, in the paper's order of subjects."""
 
-__all__ = ["CLAIMS", "Case", "Claim", "Finding", "Verdict", "claims_table", "examine"]
+__all__ = ["CLAIMS", "Case", "Claim", "ClaimResult", "Verdict", "claims_table", "examine"]
 
 
-def examine(data: PaperData) -> tuple[Finding, ...]:
+def examine(data: PaperData) -> tuple[ClaimResult, ...]:
     """Test every claim."""
-    return tuple(Finding(claim, tuple(claim.cases(data))) for claim in CLAIMS)
+    return tuple(ClaimResult(claim, tuple(claim.cases(data))) for claim in CLAIMS)
 
 
-def claims_table(findings: Sequence[Finding]) -> Table:
+def claims_table(findings: Sequence[ClaimResult]) -> Table:
     """Make a row per case."""
     rows = [_row(finding, case) for finding in findings for case in finding.cases]
     return Table(
@@ -42,7 +42,7 @@ def claims_table(findings: Sequence[Finding]) -> Table:
     )
 
 
-def _row(finding: Finding, case: Case) -> tuple[Cell, ...]:
+def _row(finding: ClaimResult, case: Case) -> tuple[Cell, ...]:
     estimate = case.estimate
     numbers = (None,) * 3 if estimate is None else (estimate.value, estimate.low, estimate.high)
     claim = finding.claim

@@ -78,7 +78,7 @@ class Claim:
 
 
 @dataclass(frozen=True)
-class Finding:
+class ClaimResult:
     """A claim and the results of its cases.
 
     Attributes

@@ -8,7 +8,7 @@ from rssnav.experiments.paper.tables.configuration import (
     configuration_cells,
 )
 from rssnav.experiments.tables import Cell, Column, Table, mean_cell
-from rssnav.planning import discounted_return, greedy_path, value_iteration
+from rssnav.optimal_flights import discounted_return, greedy_path, value_iteration
 from rssnav.results import TrainingResult
 
 _TOLERANCE = 1e-6

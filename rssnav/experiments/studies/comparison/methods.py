@@ -21,10 +21,8 @@ from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS, AgentName, fligh
 from rssnav.experiments.paper.trainings import EPISODE_LIMIT
 from rssnav.experiments.studies.study import Conditions
 from rssnav.learning_parameters import QLearning
-from rssnav.planning import (
-    Path as Flight,
-)
-from rssnav.planning import (
+from rssnav.optimal_flights import (
+    Flight,
     discounted_return,
     greedy_path,
     shortest_path,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_paper import small_data
 
-from rssnav.experiments.paper.claims import CLAIMS, Finding, Verdict, claims_table, examine
+from rssnav.experiments.paper.claims import CLAIMS, ClaimResult, Verdict, claims_table, examine
 from rssnav.experiments.paper.claims.flights import mean_rss_dbm, strong_percentage, turns
 from rssnav.experiments.paper.claims.learning import fluctuation
 from rssnav.experiments.paper.claims.verdicts import between, case, positive
@@ -14,14 +14,14 @@ from rssnav.experiments.paper.data import AGENTS, Configuration, flights, termin
 from rssnav.experiments.paper.scenarios import SPEEDS
 from rssnav.experiments.paper.shortest_flights import shortest_flights
 from rssnav.experiments.statistics import Estimate
-from rssnav.planning import path_length_m, shortest_path
+from rssnav.optimal_flights import path_length_m, shortest_path
 
 YES, NO, OPEN = Verdict.REPRODUCED, Verdict.NOT_REPRODUCED, Verdict.INCONCLUSIVE
 
 
 def verdict(key, data):
     (claim,) = (claim for claim in CLAIMS if claim.key == key)
-    return Finding(claim, tuple(claim.cases(data))).verdict
+    return ClaimResult(claim, tuple(claim.cases(data))).verdict
 
 
 def changed(data, change):
@@ -68,10 +68,10 @@ def test_a_range_is_judged_by_the_whole_interval():
 
 def test_a_claim_holds_if_all_its_cases_do_and_fails_if_one_does():
     good, bad, open_ = (case("", (), Estimate(x, x - 0.5, x + 0.5)) for x in (1.0, -1.0, 0.0))
-    assert Finding(CLAIMS[0], (good, good)).verdict is YES
-    assert Finding(CLAIMS[0], (good, open_)).verdict is OPEN
-    assert Finding(CLAIMS[0], (good, open_, bad)).verdict is NO
-    assert Finding(CLAIMS[0], (good, open_, bad)).reproduced_cases == 1
+    assert ClaimResult(CLAIMS[0], (good, good)).verdict is YES
+    assert ClaimResult(CLAIMS[0], (good, open_)).verdict is OPEN
+    assert ClaimResult(CLAIMS[0], (good, open_, bad)).verdict is NO
+    assert ClaimResult(CLAIMS[0], (good, open_, bad)).reproduced_cases == 1
 
 
 def test_keys_of_claims_are_unique():

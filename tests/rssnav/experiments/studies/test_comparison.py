@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from rssnav.experiments.studies import comparison, run_study
+from rssnav.experiments.studies import run_study
+from rssnav.experiments.studies.comparison import study as comparison
 
 
 @pytest.fixture

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from rssnav import ExactStates, Fluctuation, IntervalStates, RssAgent, ToleranceStates, train
-from rssnav.experiments.studies import noise, run_study
+from rssnav.experiments.studies import run_study
 from rssnav.experiments.studies.noise import figure, measuring
+from rssnav.experiments.studies.noise import study as noise
 from rssnav.experiments.studies.noise.measuring import Outcome, Setting, measure, settings
 from rssnav.experiments.studies.study import Conditions
 

@@ -8,8 +8,9 @@ import pytest
 from rssnav import LocationAgent, QLearning, RssAgent, train
 from rssnav.experiments.paper.data import AGENTS, Configuration
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
-from rssnav.experiments.studies import run_study, sensitivity
+from rssnav.experiments.studies import run_study
 from rssnav.experiments.studies.sensitivity import figure
+from rssnav.experiments.studies.sensitivity import study as sensitivity
 from rssnav.experiments.studies.sensitivity.alternatives import (
     ALTERNATIVES,
     FLOWN,

@@ -20,7 +20,7 @@ from rssnav.world import GridWorld
 
 
 @dataclass(frozen=True, eq=False)
-class Path:
+class Flight:
     """A flight from the start.
 
     Attributes
@@ -73,7 +73,7 @@ def path_length_m(world: GridWorld, cells: NDArray[np.int32]) -> float:
 
 def shortest_path(
     world: GridWorld, terminal: NDArray[np.bool_], cost: Literal["steps", "metres"] = "steps"
-) -> Path:
+) -> Flight:
     """Shortest flight from the start to any terminal cell; its states are the cells.
 
     Parameters
@@ -107,7 +107,7 @@ def shortest_path(
     while states[-1] != world.start_state:
         states.append(int(previous[states[-1]]))
     path = np.array(states[::-1], dtype=np.int32)
-    return Path(path, path, True, path_length_m(world, path))
+    return Flight(path, path, True, path_length_m(world, path))
 
 
 def value_iteration(
@@ -146,7 +146,7 @@ def _backup(
     return np.where(process.action_mask, q, -np.inf)
 
 
-def greedy_path(world: GridWorld, process: DecisionProcess, q: NDArray[np.float64]) -> Path:
+def greedy_path(world: GridWorld, process: DecisionProcess, q: NDArray[np.float64]) -> Flight:
     """Flight that takes the best action of each state until the goal or a state seen before.
 
     Parameters
@@ -167,7 +167,7 @@ def greedy_path(world: GridWorld, process: DecisionProcess, q: NDArray[np.float6
         seen.add(states[-1])
     path = np.array(states, dtype=np.int32)
     cells = process.cell_of_state[path]
-    return Path(path, cells, bool(process.terminal[path[-1]]), path_length_m(world, cells))
+    return Flight(path, cells, bool(process.terminal[path[-1]]), path_length_m(world, cells))
 
 
 def discounted_return(process: DecisionProcess, states: NDArray[np.int32], gamma: float) -> float:

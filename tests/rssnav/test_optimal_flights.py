@@ -13,7 +13,7 @@ from rssnav import (
     train,
     value_iteration,
 )
-from rssnav.planning import discounted_return
+from rssnav.optimal_flights import discounted_return
 
 AGENTS = pytest.mark.parametrize("agent", [RssAgent(), LocationAgent()], ids=["rss", "location"])
 

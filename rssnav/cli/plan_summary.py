@@ -6,7 +6,7 @@ from floorplans import FloorPlan
 from rssnav.cli.console import print_pairs
 
 
-def facts_of(plan: FloorPlan) -> dict[str, Any]:
+def summary_of(plan: FloorPlan) -> dict[str, Any]:
     """Return the properties of a plan, for JSON."""
     return {
         "title": plan.name,
@@ -22,7 +22,7 @@ def facts_of(plan: FloorPlan) -> dict[str, Any]:
     }
 
 
-def print_facts(plan: FloorPlan) -> None:
+def print_summary(plan: FloorPlan) -> None:
     """Print the properties of a plan, one per line."""
     print_pairs(
         [

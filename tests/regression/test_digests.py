@@ -1,7 +1,7 @@
 import json
 
 import pytest
-from regression.reference import FILE, MEASURED
+from regression.digests import FILE, MEASURED
 
 REFERENCE = json.loads(FILE.read_text())
 

@@ -1,6 +1,6 @@
 """Digests of a small map, of its paths and of trainings in it, which no change may alter unnoticed.
 
-`python tests/regression/reference.py` writes `reference.json` again. A change of the physics or of
+`python tests/regression/digests.py` writes `digests.json` again. A change of the physics or of
 the learning rules needs that, and a line in the changelog that says why.
 """
 
@@ -16,7 +16,7 @@ import floorplans
 from raytrace import Grid, RadioMap, Scene, TraceConfig, Transmitter, compute_radio_map, trace_paths
 from rssnav import GridWorld, LocationAgent, RssAgent, TrainingResult, train
 
-FILE = Path(__file__).with_name("reference.json")
+FILE = Path(__file__).with_name("digests.json")
 DECIMALS = 5
 """Of decibels and metres: processors differ in the last bits of fused operations."""
 

@@ -5,7 +5,7 @@ a ray could follow is tried, every point of reflection must lie on a triangle of
 triangle may stand between two points. Edges are found by looking which triangles meet along a
 line; a diffracted path crosses its edge where both sides make the same angle with it (Keller's
 law), after all reflections have been undone. What each path's field is, is the matter of
-`reference_field`.
+`brute_force_field`.
 """
 
 from collections.abc import Iterator, Sequence

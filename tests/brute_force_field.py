@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from brute_force import DIFFRACTION, REFLECTION, Edge, Facets, Found
 from numpy.typing import NDArray
-from reference import DIFFRACTION, REFLECTION, Edge, Facets, Found
 from scipy.special import fresnel
 
 from raytrace import Antenna, Transmitter
