@@ -8,7 +8,4 @@ SPEED_OF_LIGHT = 299_792_458.0
 VACUUM_PERMITTIVITY = 8.854_187_8128e-12
 """Vacuum permittivity [F/m]."""
 
-VACUUM_IMPEDANCE = 376.730_313_668
-"""Impedance of free space [ohm]."""
-
 TWO_PI = 2.0 * pi

@@ -4,7 +4,8 @@ from dataclasses import dataclass, fields
 
 from floorplans import FloorPlan, PlanMaterial
 from raytrace import Dielectric, Layer, Layered, Material, Scene, SceneError
-from raytrace.radio.materials import MATERIAL_EDITION, find_material
+from raytrace.radio.itu import DEFAULT_EDITION
+from raytrace.radio.materials import find_material
 
 _NOT_OF_THE_SCENE = {"name", "source", "start", "origin", "material_edition"}
 """Attributes of a plan that its scene does not depend on; `PlanScene` compares the edition."""
@@ -12,7 +13,7 @@ _NOT_OF_THE_SCENE = {"name", "source", "start", "origin", "material_edition"}
 
 def edition_of(plan: FloorPlan, edition: str | None = None) -> str:
     """Edition of ITU-R P.2040: the one asked for, or the plan's, or the tracer's default."""
-    return edition or plan.material_edition or MATERIAL_EDITION
+    return edition or plan.material_edition or DEFAULT_EDITION
 
 
 def scene_of(plan: FloorPlan, edition: str | None = None) -> Scene:

@@ -1,4 +1,4 @@
-"""Antenna patterns: two field amplitudes over the direction, and their tables for the kernels.
+"""Antennas: amplitudes of two polarisations over the direction; dipoles and the isotropic one.
 
 Towards a unit direction s = (u_x c, u_y c, sigma) with horizontal part u, cosine c and sine sigma
 of the elevation, an antenna has the amplitudes `v` (vertical polarisation) along
@@ -48,7 +48,7 @@ class Antenna(Protocol):
         ...
 
     def describe(self) -> str:
-        """Name and parameters in one line, as stored with a map."""
+        """Name and parameters in one line, for messages."""
         ...
 
 
@@ -85,11 +85,11 @@ class HalfWaveDipole:
         """Field amplitudes towards directions; see `Antenna.amplitudes`."""
         cosine = np.sqrt(np.maximum(1.0 - sine**2, 0.0))
         x, y, z = self.axis
-        ahead = x * np.cos(azimuth) + y * np.sin(azimuth)
-        aside = y * np.cos(azimuth) - x * np.sin(azimuth)
-        along_wire = ahead * cosine + z * sine
+        along_azimuth = x * np.cos(azimuth) + y * np.sin(azimuth)
+        across_azimuth = y * np.cos(azimuth) - x * np.sin(azimuth)
+        along_wire = along_azimuth * cosine + z * sine
         size = 10.0 ** (self.peak_gain_db / 20.0) * _dipole_shape(along_wire)
-        return Amplitudes(size * (z * cosine - ahead * sine), size * aside)
+        return Amplitudes(size * (z * cosine - along_azimuth * sine), size * across_azimuth)
 
     def describe(self) -> str:
         """Name and parameters in one line."""
@@ -125,35 +125,6 @@ class Isotropic:
     def describe(self) -> str:
         """Name and parameters in one line."""
         return f"isotropic, vertically polarised, gain {self.gain_db:g} dB"
-
-
-ELEVATION_STEPS = 256
-AZIMUTH_STEPS = 512
-"""Steps of an antenna table from the nadir to the zenith, and once around: 0.9 deg at most."""
-
-
-def antenna_tables(antenna: Antenna) -> tuple[Complexes, Complexes]:
-    """Tabulate an antenna's amplitudes for look-up by bilinear interpolation.
-
-    The grid is regular in two quotients instead of two angles, which cost no trigonometry and have
-    nodes at the zenith, the horizon and the axes: sigma / (|sigma| + c), and quarter by quarter
-    |y| / (|x| + |y|) or |x| / (|x| + |y|).
-    The error for a half-wave dipole of any axis is below 1e-4 of its peak amplitude.
-
-    Returns
-    -------
-    v, h : ndarray
-        (ELEVATION_STEPS + 1, AZIMUTH_STEPS + 1) complex: first index elevation from nadir to
-        zenith, second azimuth from +x once around, the last column repeating the first.
-    """
-    rise = np.linspace(-1.0, 1.0, ELEVATION_STEPS + 1)
-    elevation = np.arctan2(rise, 1.0 - np.abs(rise))
-    turn = np.linspace(0.0, 4.0, AZIMUTH_STEPS + 1)
-    quarter = np.minimum(np.floor(turn), 3.0)
-    azimuth = quarter * (0.5 * np.pi) + np.arctan2(turn - quarter, quarter + 1.0 - turn)
-    found = antenna.amplitudes(*np.meshgrid(np.sin(elevation), azimuth, indexing="ij"))
-    v, h = (np.asarray(part, dtype=np.complex128) for part in found)
-    return v, h
 
 
 def is_vertical(antenna: Antenna) -> bool:

@@ -5,7 +5,6 @@ or one of two ideals: `PERFECT_CONDUCTOR` and `ABSORBER`. The built-in dielectri
 Recommendation ITU-R P.2040, in the edition asked for (`raytrace.radio.itu`, docs/materials.md).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from math import inf
@@ -13,14 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from raytrace.arrays import Complexes, Floats
+from raytrace.arrays import Floats
 from raytrace.constants import TWO_PI, VACUUM_PERMITTIVITY
 from raytrace.errors import SceneError
 from raytrace.radio.itu import DEFAULT_EDITION, TABLES, Row
 from raytrace.radio.slabs import SlabCoefficients, slab_coefficients, stack_coefficients
-
-MATERIAL_EDITION = DEFAULT_EDITION
-"""The edition of ITU-R P.2040 by default."""
 
 
 @dataclass(frozen=True)
@@ -225,70 +221,3 @@ class Slab(NamedTuple):
     def is_symmetric(self) -> bool:
         """Whether both sides reflect alike."""
         return not isinstance(self.material, Layered) or self.material.is_symmetric
-
-
-SLAB_TABLE_STEPS = 4096
-
-
-def slab_tables(slabs: Sequence[tuple[Material | str, float]], frequency_hz: float) -> Floats:
-    """Tabulate the reflection of each slab over the cosine of incidence, for the kernels.
-
-    Parameters
-    ----------
-    slabs
-        (material or built-in name, thickness [m]) of each.
-    frequency_hz
-        Frequency [Hz].
-
-    Returns
-    -------
-    ndarray
-        (n_slabs, SLAB_TABLE_STEPS + 2, 4): real and imaginary parts of R_tm and of
-        (R_te + R_tm) / sin^2 theta, at cosines 0, 1/n, ..., 1 and once more. The second is
-        what couples the polarisations (docs/theory.md, eq. 12); it is smooth at normal incidence.
-
-    Raises
-    ------
-    SceneError
-        Where a material is not known at that frequency.
-    """
-    return np.stack([_table(c.r_tm, c.r_te + c.r_tm) for c in _at_all_angles(slabs, frequency_hz)])
-
-
-def transmission_tables(
-    slabs: Sequence[tuple[Material | str, float]], frequency_hz: float
-) -> Floats:
-    """Tabulate the transmission of each slab like its reflection in `slab_tables`.
-
-    Returns
-    -------
-    ndarray
-        (n_slabs, SLAB_TABLE_STEPS + 2, 4): real and imaginary parts of T_tm and of
-        (T_te - T_tm) / sin^2 theta, at the cosines of `slab_tables`; docs/theory.md, eqs. 28-30.
-        T is relative to free space across the same thickness, so that a slab of vacuum has
-        T = 1: a ray goes straight on through the sheet, and its length holds the phase.
-    """
-    return np.stack([_table(c.t_tm, c.t_te - c.t_tm) for c in _at_all_angles(slabs, frequency_hz)])
-
-
-def _at_all_angles(
-    slabs: Sequence[tuple[Material | str, float]], frequency_hz: float
-) -> list[SlabCoefficients]:
-    """Coefficients at the cosines of the tables, transmission relative to air."""
-    cos_i = np.linspace(0.0, 1.0, SLAB_TABLE_STEPS + 1)
-    found: list[SlabCoefficients] = []
-    for material, thickness_m in slabs:
-        slab = Slab.of(material, thickness_m)
-        c = slab.material.coefficients(thickness_m, frequency_hz, cos_i)
-        found.append(c.relative_to_air(thickness_m, frequency_hz, cos_i))
-    return found
-
-
-def _table(tm: Complexes, difference: Complexes) -> Floats:
-    """Columns (steps + 2, 4) of a coefficient and of a difference over sin^2 theta."""
-    sin2 = 1.0 - np.linspace(0.0, 1.0, len(tm)) ** 2
-    mix = np.empty_like(tm)
-    mix[:-1] = difference[:-1] / sin2[:-1]
-    mix[-1] = 2.0 * mix[-2] - mix[-3]
-    columns = np.column_stack([tm.real, tm.imag, mix.real, mix.imag])
-    return np.concatenate([columns, columns[-1:]])

@@ -1,4 +1,4 @@
-"""Antennas given by a table of their pattern, from arrays or from a CSV file."""
+"""An antenna given by a table of its pattern, from arrays or from a CSV file."""
 
 import csv
 from dataclasses import dataclass

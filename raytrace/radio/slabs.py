@@ -37,8 +37,8 @@ class SlabCoefficients(NamedTuple):
         phase across it, so air gives 1 (eq. 28).
         """
         wavenumber = TWO_PI * frequency_hz / SPEED_OF_LIGHT
-        ahead = np.exp(1j * wavenumber * thickness_m * np.asarray(cos_incidence))
-        return self._replace(t_te=self.t_te * ahead, t_tm=self.t_tm * ahead)
+        air_phase = np.exp(1j * wavenumber * thickness_m * np.asarray(cos_incidence))
+        return self._replace(t_te=self.t_te * air_phase, t_tm=self.t_tm * air_phase)
 
 
 def slab_coefficients(
@@ -94,14 +94,14 @@ def _through(
     """
     behind = [*admittances[1:], air.astype(np.complex128)]
     reflected = _step(admittances[-1], behind[-1])
-    passed = 1.0 + reflected
+    transmitted = 1.0 + reflected
     before = [air.astype(np.complex128), *admittances[:-1]]
     for y, y_layer, p in reversed(list(zip(before, admittances, delays, strict=True))):
         step = _step(y, y_layer)
         echo = reflected * p**2
-        passed = passed * p * (1.0 + step) / (1.0 + step * echo)
+        transmitted = transmitted * p * (1.0 + step) / (1.0 + step * echo)
         reflected = (step + echo) / (1.0 + step * echo)
-    return reflected, passed
+    return reflected, transmitted
 
 
 def _step(y_before: Complexes, y_behind: Complexes) -> Complexes:

@@ -10,7 +10,7 @@ import typer
 
 import floorplans
 from raytrace import TraceConfig, Transmitter, trace_paths
-from raytrace.radio.materials import MATERIAL_EDITION
+from raytrace.radio.itu import DEFAULT_EDITION
 from raytrace.threads import n_threads
 from raytrace.trace import TRACER_VERSION
 from rssnav import GridWorld, LocationAgent, train
@@ -101,7 +101,7 @@ def _summary(caches: dict[str, CacheState], test_s: float, faults: list[str]) ->
         "platform": platform.platform(),
         "libraries": {name: version(name) for name in LIBRARIES},
         "tracer_version": TRACER_VERSION,
-        "material_edition": MATERIAL_EDITION,
+        "material_edition": DEFAULT_EDITION,
         "threads": n_threads(),
         "kernels": {
             name: {

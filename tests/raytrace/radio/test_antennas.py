@@ -17,13 +17,8 @@ from raytrace import (
     PatternTable,
     SceneError,
 )
-from raytrace.radio.antennas import (
-    AZIMUTH_STEPS,
-    ELEVATION_STEPS,
-    Amplitudes,
-    antenna_tables,
-    vertical_amplitude,
-)
+from raytrace.radio.antennas import Amplitudes, vertical_amplitude
+from raytrace.radio.tables import AZIMUTH_STEPS, ELEVATION_STEPS, pattern_tables
 
 Floats = NDArray[np.float64]
 
@@ -42,7 +37,7 @@ def unit(vector: tuple[float, float, float] | Floats) -> Floats:
 
 
 def table_coordinates(direction: ArrayLike) -> tuple[Floats, Floats]:
-    """Row and column of directions (..., 3) on the grid of `antenna_tables`."""
+    """Row and column of directions (..., 3) on the grid of `pattern_tables`."""
     x, y, z = np.moveaxis(np.asarray(direction, dtype=np.float64), -1, 0)
     row = (1.0 + z / (np.abs(z) + np.hypot(x, y))) * (0.5 * ELEVATION_STEPS)
     part = np.abs(y) / np.maximum(np.abs(x) + np.abs(y), 1e-300)
@@ -117,14 +112,14 @@ def test_a_lossless_dipole_radiates_what_it_is_fed(axis: tuple[float, float, flo
 @pytest.mark.parametrize("antenna", ANTENNAS)
 def test_tables_hold_the_pattern_to_1e_4(antenna: Antenna) -> None:
     s = np.concatenate([around_the_sphere(20_000), np.eye(3), 0.0 - np.eye(3)])
-    found = look_up(antenna_tables(antenna), s)
+    found = look_up(pattern_tables(antenna), s)
     exact = antenna.amplitudes(s[:, 2], np.arctan2(s[:, 1], s[:, 0]))
     assert np.abs(found.v - exact.v).max() < 1e-4
     assert np.abs(found.h - exact.h).max() < 1e-4
 
 
 def test_tables_close_around_the_vertical() -> None:
-    for part in antenna_tables(HalfWaveDipole(axis=(0.3, -0.5, 0.8))):
+    for part in pattern_tables(HalfWaveDipole(axis=(0.3, -0.5, 0.8))):
         assert part.shape == (ELEVATION_STEPS + 1, AZIMUTH_STEPS + 1)
         np.testing.assert_allclose(part[:, 0], part[:, -1], atol=1e-12)
 

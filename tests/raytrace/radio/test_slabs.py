@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from raytrace.constants import SPEED_OF_LIGHT
-from raytrace.radio.materials import MATERIALS, SLAB_TABLE_STEPS, slab_tables
+from raytrace.radio.materials import MATERIALS
 from raytrace.radio.slabs import slab_coefficients
+from raytrace.radio.tables import SLAB_TABLE_STEPS, slab_tables
 
 F_HZ = 2.4e9
 WAVELENGTH_M = SPEED_OF_LIGHT / F_HZ
