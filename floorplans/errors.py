@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import json
+import re
 from difflib import get_close_matches
 
 Place = tuple[str | int, ...]
 """Keys and indices that lead to a value: ("walls", 3, "openings", 0) is walls[3].openings[0]."""
+
+
+_BARE_KEY = re.compile(r"[\w-]{1,60}")
+_MAX_SHOWN = 200
 
 
 class PlanError(ValueError):
@@ -72,7 +77,11 @@ def format_place(place: Place) -> str:
     """Write a place in TOML notation: ``walls[3].openings[0].width_m``."""
     text = ""
     for step in place:
-        text += f"[{step}]" if isinstance(step, int) else f".{step}" if text else step
+        if isinstance(step, int):
+            text += f"[{step}]"
+        else:
+            key = step if _BARE_KEY.fullmatch(step) else _shown(json.dumps(step))
+            text += f".{key}" if text else key
     return text
 
 
@@ -90,4 +99,12 @@ def unknown_name(kind: str, name: str, known: tuple[str, ...]) -> str:
 
 
 def _format_value(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False, default=str)
+    try:
+        return _shown(json.dumps(value, ensure_ascii=False, default=str))
+    except (ValueError, RecursionError):  # thousands of digits, or of lists in each other
+        return f"<{type(value).__name__}>"
+
+
+def _shown(text: str) -> str:
+    """Cut a text that is too long for a message."""
+    return text if len(text) <= _MAX_SHOWN else f"{text[: _MAX_SHOWN - 3]}..."

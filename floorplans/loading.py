@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
+from bisect import bisect_right
 from collections.abc import Mapping
 from importlib import resources
 from itertools import accumulate, pairwise
@@ -12,7 +14,7 @@ from pathlib import Path
 from shapely.geometry import Polygon
 
 from atomicfiles import atomic_write
-from floorplans.checks.walls import check_openings, check_positive, opening_kind
+from floorplans.checks.walls import check_openings, opening_kind
 from floorplans.errors import Place, PlanError, format_place
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import Own, by_name, check_materials
@@ -21,6 +23,7 @@ from floorplans.toml.materials import read_materials
 from floorplans.toml.table import Table, as_points
 from floorplans.toml.writer import FORMAT_VERSION, dumps
 from floorplans.unchecked import PlanFile, UncheckedPlan
+from floorplans.values import LENGTH, check_number
 from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 
 PLAN_KEYS = (
@@ -32,6 +35,12 @@ ORIGIN_KEYS = ("longitude_deg", "latitude_deg", "rotation_deg")
 DEFAULTS_KEYS = ("material", "thickness_m")
 WALL_KEYS = ("points", "material", "thickness_m", "height_m", "openings")
 OPENING_KEYS = ("kind", "offset_m", "width_m", "sill_m", "head_m", "material", "thickness_m")
+
+MAX_CHARACTERS = 4_000_000
+
+_NESTED_KEY = re.compile(
+    r"""(?:(?:"[^"\n]*"|'[^'\n]*'|(?<![\w-])[\w-]++)[ \t]*+\.[ \t]*+){99}""", re.ASCII
+)
 
 Corners = list[tuple[float, float]]
 
@@ -69,13 +78,14 @@ def read_text(plan: str | Path) -> tuple[str, str]:
         file = resources.files("floorplans") / "plans" / f"{plan}.toml"
         return file.read_text(encoding="utf-8"), file.name
     try:
-        return Path(plan).read_text(encoding="utf-8"), str(plan)
+        with Path(plan).open(encoding="utf-8") as file:
+            return file.read(MAX_CHARACTERS + 1), str(plan)
     except UnicodeDecodeError as error:
         raise PlanError(f"not UTF-8 text: {error.reason}", origin=str(plan)) from error
-    except OSError as error:
+    except (OSError, ValueError) as error:  # ValueError: a path with a NUL character
         raise PlanError(
-            f"the file cannot be read: {error.strerror}; give the path of a TOML file or one of "
-            f"the built-in plans {', '.join(builtin_names())}",
+            f"the file cannot be read: {getattr(error, 'strerror', None) or error}; give the path "
+            f"of a TOML file or one of the built-in plans {', '.join(builtin_names())}",
             origin=str(plan),
         ) from error
 
@@ -116,10 +126,21 @@ def loads_unchecked(text: str, *, origin: str = "<text>") -> PlanFile:
 
 
 def _parse(text: str, origin: str) -> dict[str, object]:
+    """Parse TOML whose size and nesting are limited: the parser takes quadratic time over keys."""
+    if len(text) > MAX_CHARACTERS:
+        raise PlanError(f"a plan has at most {MAX_CHARACTERS} characters", origin=origin)
+    if _NESTED_KEY.search(text):
+        raise PlanError("a key of 100 parts; a plan needs 3, as in a.b.c", origin=origin)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise PlanError(f"not valid TOML: {error}", origin=origin) from error
+    except RecursionError as error:
+        raise PlanError(
+            "lists or tables are nested too deeply; a plan needs 5 levels", origin=origin
+        ) from error
+    except ValueError as error:  # Python's limit for the digits of an integer
+        raise PlanError(f"a number is too long: {error}", origin=origin) from error
 
 
 def from_data(data: Mapping[str, object], *, origin: str = "<data>") -> FloorPlan:
@@ -147,7 +168,7 @@ def _read_plan(table: Table) -> FloorPlan:
 def _read_unchecked(table: Table) -> PlanFile:
     _check_version(table)
     height_m = table.number("height_m")
-    check_positive(height_m, ("height_m",))
+    check_number(height_m, LENGTH, ("height_m",))
     defaults = table.table("defaults", DEFAULTS_KEYS)
     materials = read_materials(table)
     check_materials(materials, None)
@@ -265,7 +286,7 @@ def _distribute_openings(
     by_piece: list[list[Opening]] = [[] for _ in lengths]
     for index, opening in enumerate(openings):
         middle = opening.offset_m + opening.width_m / 2
-        piece = max(i for i in range(len(lengths)) if begins[i] <= middle)
+        piece = bisect_right(begins[:-1], middle) - 1
         for corner in (piece, piece + 1):
             inside = opening.offset_m + TOLERANCE_M < begins[corner] < opening.end_m - TOLERANCE_M
             if inside:

@@ -7,11 +7,18 @@ in hue, so that they stay distinguishable under common colour-vision deficiencie
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
 from types import MappingProxyType
 from typing import NamedTuple
 
 from floorplans.errors import Place, PlanError, unknown_name
+from floorplans.values import (
+    LENGTH,
+    MAX_LAYERS,
+    MAX_MATERIALS,
+    Range,
+    check_count,
+    check_number,
+)
 
 MATERIAL_COLOURS: dict[str, str] = {
     "concrete": "#4d4d4d",
@@ -95,6 +102,14 @@ class PlanMaterial:
         return self.layers == self.layers[::-1]
 
 
+PARAMETERS = {
+    "a": Range(1.0, 1e6),
+    "b": Range(-10.0, 10.0),
+    "c": Range(0.0, 1e12, "S/m"),
+    "d": Range(-10.0, 10.0),
+}
+"""Ranges of the parameters of a dielectric."""
+
 Own = Mapping[str, PlanMaterial]
 """A plan's own materials by name."""
 
@@ -114,6 +129,7 @@ def check_materials(materials: Sequence[PlanMaterial], edition: str | None) -> N
     if edition is not None and edition not in MATERIAL_EDITIONS:
         problem = unknown_name("edition of ITU-R P.2040", edition, MATERIAL_EDITIONS)
         raise PlanError(problem, ("material_edition",), edition)
+    check_count(materials, MAX_MATERIALS, ("materials",))
     own = by_name(materials)
     for material in materials:
         _check_own(material, own, ("materials", material.name))
@@ -127,12 +143,11 @@ def _check_own(material: PlanMaterial, own: Own, place: Place) -> None:
             "expected a name of letters, digits and underscores that no built-in material has",
             place,
         )
-    for key, least in (("a", 1.0), ("c", 0.0)):
-        value = getattr(material, key)
-        if not (isfinite(value) and value >= least):
-            raise PlanError(f"expected a finite number of at least {least:g}", (*place, key), value)
+    for key, allowed in PARAMETERS.items():
+        check_number(getattr(material, key), allowed, (*place, key))
     if material.colour is not None and not _is_colour(material.colour):
         raise PlanError("expected #rrggbb", (*place, "colour"), material.colour)
+    check_count(material.layers, MAX_LAYERS, (*place, "layers"))
     for index, layer in enumerate(material.layers):
         _check_layer(layer, own, (*place, "layers", index))
 
@@ -143,12 +158,7 @@ def _check_layer(layer: MaterialLayer, own: Own, place: Place) -> None:
     if layer.material not in known:
         problem = unknown_name("material of a layer", layer.material, known)
         raise PlanError(problem, (*place, "material"), layer.material)
-    if not (isfinite(layer.thickness_m) and layer.thickness_m > 0):
-        raise PlanError(
-            "expected a finite number greater than 0 [m]",
-            (*place, "thickness_m"),
-            layer.thickness_m,
-        )
+    check_number(layer.thickness_m, LENGTH, (*place, "thickness_m"))
 
 
 def _is_colour(text: str) -> bool:

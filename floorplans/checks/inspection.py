@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 from math import dist
 from typing import Literal
 
@@ -16,7 +17,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiLineString, Point, Polygon
 
-from floorplans.checks.plan import building_faults, number_faults
+from floorplans.checks.plan import MAX_FAULTS, building_faults, geos_flags_ignored, number_faults
 from floorplans.errors import PlanError, format_place
 from floorplans.unchecked import PlanFile, UncheckedPlan
 from floorplans.walls import TOLERANCE_M, Wall, centre_lines
@@ -89,7 +90,9 @@ def inspect(file: PlanFile) -> tuple[Finding, ...]:
     wrong_numbers = [_error(fault, file) for fault in number_faults(file.plan)]
     if wrong_numbers:
         return tuple(wrong_numbers)
-    return (*(_error(fault, file) for fault in building_faults(file.plan)), *_warnings(file))
+    errors = [_error(fault, file) for fault in building_faults(file.plan)]
+    with geos_flags_ignored():
+        return (*errors, *islice(_warnings(file), MAX_FAULTS))
 
 
 def _error(fault: PlanError, file: PlanFile) -> Finding:

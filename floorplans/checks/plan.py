@@ -4,20 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from math import isfinite
+from itertools import islice
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
+from shapely.errors import ShapelyError
 from shapely.geometry import LineString, MultiLineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.strtree import STRtree
 
-from floorplans.checks.walls import check_positive, check_wall
+from floorplans.checks.walls import check_wall
 from floorplans.errors import Place, PlanError
 from floorplans.georeference import check_origin
 from floorplans.materials import check_materials, check_slab
 from floorplans.unchecked import UncheckedPlan
+from floorplans.values import (
+    COORDINATE,
+    LENGTH,
+    MAX_CORNERS,
+    MAX_HOLES,
+    MAX_SIDE_M,
+    MAX_WALLS,
+    check_count,
+    check_number,
+    type_faults,
+)
 from floorplans.walls import TOLERANCE_M, Wall, centre_lines, closed_intervals
+
+MAX_FAULTS = 1000
+"""No more faults than this are listed."""
+
+_BATCH = 256
+_PARALLEL_SINE = 0.01
 
 
 def check_plan(plan: UncheckedPlan) -> None:
@@ -37,7 +56,22 @@ def faults(plan: UncheckedPlan) -> Iterator[PlanError]:
 
 
 def building_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
-    """Yield what is wrong about a building whose numbers are valid."""
+    """Yield what is wrong about a building whose numbers are valid, up to `MAX_FAULTS`."""
+    try:
+        with geos_flags_ignored():
+            found = list(islice(_building_faults(plan), MAX_FAULTS))
+    except ShapelyError as error:
+        problem = f"the geometry cannot be computed ({error}); round coordinates to the millimetre"
+        found = [PlanError(problem)]
+    yield from found
+
+
+def geos_flags_ignored() -> np.errstate:
+    """Context in which the divisions by zero that GEOS makes and handles warn nobody."""
+    return np.errstate(divide="ignore", over="ignore", invalid="ignore")
+
+
+def _building_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
     yield from _walls_outside(plan)
     yield from _duplicate_walls(plan.walls)
     yield from _open_edges(plan)
@@ -46,11 +80,18 @@ def building_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
 
 
 def number_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
-    """Yield invalid numbers and names."""
+    """Yield values of wrong types or, if there are none, invalid numbers and names."""
+    wrong_types = list(islice(type_faults(plan, UncheckedPlan), MAX_FAULTS))
+    yield from wrong_types or islice(_value_faults(plan), MAX_FAULTS)
+
+
+def _value_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
     yield from _caught(lambda: _check_name(plan.name))
     yield from _caught(lambda: check_materials(plan.materials, plan.material_edition))
     yield from _caught(lambda: _check_slabs(plan))
     yield from _caught(lambda: _check_outline(plan.outline))
+    yield from _caught(lambda: check_count(plan.walls, MAX_WALLS, ("walls",)))
+    yield from _caught(lambda: _check_points(plan))
     for index, wall in enumerate(plan.walls):
         place: Place = ("walls", index)
         for fault in _caught(partial(check_wall, wall, plan.height_m, plan.own_materials, place)):
@@ -68,10 +109,9 @@ def _caught(check: Callable[[], None]) -> Iterator[PlanError]:
         yield fault
 
 
-def _middle(wall: Wall) -> tuple[float, float] | None:
-    """Midpoint of a wall; None if its ends are not finite."""
-    x, y = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
-    return (x, y) if isfinite(x) and isfinite(y) else None
+def _middle(wall: Wall) -> tuple[float, float]:
+    """Midpoint of a wall."""
+    return (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
 
 
 def _check_name(name: str) -> None:
@@ -80,20 +120,35 @@ def _check_name(name: str) -> None:
 
 
 def _check_slabs(plan: UncheckedPlan) -> None:
-    check_positive(plan.height_m, ("height_m",))
+    check_number(plan.height_m, LENGTH, ("height_m",))
     own = plan.own_materials
     check_slab(plan.floor_material, plan.floor_thickness_m, own, (), "floor_")
     check_slab(plan.ceiling_material, plan.ceiling_thickness_m, own, (), "ceiling_")
-    check_positive(plan.floor_thickness_m, ("floor_thickness_m",))
-    check_positive(plan.ceiling_thickness_m, ("ceiling_thickness_m",))
+    check_number(plan.floor_thickness_m, LENGTH, ("floor_thickness_m",))
+    check_number(plan.ceiling_thickness_m, LENGTH, ("ceiling_thickness_m",))
+
+
+def _check_points(plan: UncheckedPlan) -> None:
+    for key, point in (("source", plan.source), ("start", plan.start)):
+        for index, coordinate in enumerate(point):
+            check_number(coordinate, COORDINATE, (key, index))
 
 
 def _check_outline(outline: Polygon) -> None:
     place: Place = ("outline",)
     if outline.has_z:
         raise PlanError("the outline has heights; give points (x, y)", place)
-    if not all(isfinite(number) for number in shapely.get_coordinates(outline).flat):
-        raise PlanError("expected finite numbers [m]", place)
+    check_count(outline.interiors, MAX_HOLES, ("holes",))
+    corners = shapely.get_coordinates(outline)
+    check_count(corners, MAX_CORNERS, place)
+    for number in corners.flat:
+        check_number(float(number), COORDINATE, place)
+    x_min, y_min, x_max, y_max = outline.bounds
+    side_m = max(x_max - x_min, y_max - y_min)
+    if side_m > MAX_SIDE_M:
+        raise PlanError(
+            f"the outline extends over {side_m:g} m; expected at most {MAX_SIDE_M:g}", place
+        )
     if not outline.is_valid:
         reason = shapely.is_valid_reason(outline)
         raise PlanError(
@@ -109,7 +164,7 @@ def _walls_outside(plan: UncheckedPlan) -> Iterator[PlanError]:
     shapely.prepare(room)
     for index, line in enumerate(centre_lines(plan.walls)):
         if not room.covers(line):
-            outside = _longest(line.difference(room))
+            outside = max(_lines(line.difference(room)), key=lambda part: part.length, default=line)
             yield PlanError(
                 f"the wall leaves the outline from {_ends_text(outside)}; shorten it or widen the "
                 "outline",
@@ -120,18 +175,29 @@ def _walls_outside(plan: UncheckedPlan) -> Iterator[PlanError]:
 
 def _duplicate_walls(walls: tuple[Wall, ...]) -> Iterator[PlanError]:
     lines = centre_lines(walls)
-    pairs = STRtree(lines).query(lines, predicate="intersects").T.tolist()
-    for first, second in pairs:
-        if first < second:
-            shared = shapely.intersection(lines.item(first), lines.item(second))
-            if shared.length > TOLERANCE_M:
-                section = _longest(shared)
-                yield PlanError(
-                    f"the wall runs along another wall from {_ends_text(section)}; "
-                    "one wall is one sheet: remove this section from one of them",
-                    ("walls", second),
-                    at=_first_point(section),
-                )
+    for first, second in _parallel_pairs(lines):
+        shared = shapely.intersection(lines.item(first), lines.item(second))
+        if shared.length > TOLERANCE_M:
+            section = _longest(shared)
+            yield PlanError(
+                f"the wall runs along another wall from {_ends_text(section)}; "
+                "one wall is one sheet: remove this section from one of them",
+                ("walls", second),
+                at=_first_point(section),
+            )
+
+
+def _parallel_pairs(lines: NDArray[np.object_]) -> Iterator[tuple[int, int]]:
+    """Yield lines that touch and are nearly parallel; a batch of lines at a time, for memory."""
+    tree = STRtree(lines)
+    along = np.diff(shapely.get_coordinates(lines).reshape(-1, 2, 2), axis=1)[:, 0]
+    along /= np.hypot(*along.T)[:, None]
+    for begin in range(0, len(lines), _BATCH):
+        first, second = tree.query(lines[begin : begin + _BATCH], predicate="intersects")
+        first += begin
+        (x0, y0), (x1, y1) = along[first].T, along[second].T
+        kept = (first < second) & (np.abs(x0 * y1 - y0 * x1) < _PARALLEL_SINE)
+        yield from zip(first[kept].tolist(), second[kept].tolist(), strict=True)
 
 
 def _open_edges(plan: UncheckedPlan) -> Iterator[PlanError]:

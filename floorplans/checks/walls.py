@@ -1,11 +1,17 @@
 """Checks of one wall and its openings; the first problem found raises `PlanError`."""
 
 from itertools import combinations
-from math import isfinite
 from typing import get_args
 
 from floorplans.errors import Place, PlanError, unknown_name
 from floorplans.materials import Own, check_slab
+from floorplans.values import (
+    COORDINATE,
+    LENGTH,
+    MAX_OPENINGS,
+    check_count,
+    check_number,
+)
 from floorplans.walls import TOLERANCE_M, Opening, OpeningKind, Wall
 
 OPENING_KINDS: tuple[OpeningKind, ...] = get_args(OpeningKind)
@@ -29,8 +35,8 @@ def check_wall(wall: Wall, ceiling_m: float, own: Own, place: Place) -> None:
     PlanError
     """
     for key, point in (("start", wall.start), ("end", wall.end)):
-        if not all(isfinite(coordinate) for coordinate in point):
-            raise PlanError("expected finite numbers [m]", (*place, key), point)
+        for coordinate in point:
+            check_number(coordinate, COORDINATE, (*place, key))
     if wall.length_m < TOLERANCE_M:
         x, y = wall.start
         raise PlanError(
@@ -39,8 +45,8 @@ def check_wall(wall: Wall, ceiling_m: float, own: Own, place: Place) -> None:
             place,
         )
     check_slab(wall.material, wall.thickness_m, own, place, is_wall=True)
-    check_positive(wall.thickness_m, (*place, "thickness_m"))
-    check_positive(wall.height_m, (*place, "height_m"))
+    check_number(wall.thickness_m, LENGTH, (*place, "thickness_m"))
+    check_number(wall.height_m, LENGTH, (*place, "height_m"))
     if wall.height_m > ceiling_m:
         raise PlanError(
             f"the wall rises above the ceiling at {ceiling_m:g} m; lower it, or leave height_m out",
@@ -66,6 +72,7 @@ def check_openings(wall: Wall, own: Own, place: Place) -> None:
     PlanError
     """
     openings = wall.openings
+    check_count(openings, MAX_OPENINGS, (*place, "openings"))
     for index, opening in enumerate(openings):
         here = (*place, "openings", index)
         _check_extent_along(opening, wall.length_m, here)
@@ -82,12 +89,6 @@ def check_openings(wall: Wall, own: Own, place: Place) -> None:
             )
 
 
-def check_positive(number: float, place: Place) -> None:
-    """Raise `PlanError` for a length that is not a finite number above 0."""
-    if not (isfinite(number) and number > 0):
-        raise PlanError("expected a finite number greater than 0 [m]", place, number)
-
-
 def opening_kind(name: str, place: Place) -> OpeningKind:
     """Return the kind of opening with this name; raise `PlanError` if there is none."""
     for kind in OPENING_KINDS:
@@ -97,7 +98,7 @@ def opening_kind(name: str, place: Place) -> OpeningKind:
 
 
 def _check_extent_along(opening: Opening, length_m: float, place: Place) -> None:
-    check_positive(opening.width_m, (*place, "width_m"))
+    check_number(opening.width_m, LENGTH, (*place, "width_m"))
     if not opening.offset_m >= 0:
         raise PlanError(
             "the opening begins before its wall; expected 0 or more [m]",
@@ -140,7 +141,7 @@ def _check_filling(opening: Opening, wall_m: float, own: Own, place: Place) -> N
         thickness_m = wall_m if opening.thickness_m is None else opening.thickness_m
         check_slab(opening.material, thickness_m, own, place, is_wall=True)
     if opening.thickness_m is not None:
-        check_positive(opening.thickness_m, (*place, "thickness_m"))
+        check_number(opening.thickness_m, LENGTH, (*place, "thickness_m"))
         if opening.material is None:
             raise PlanError(
                 "thickness without a material; name the filling's material, "

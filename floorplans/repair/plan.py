@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import shapely
 
-from floorplans.checks.plan import building_faults
+from floorplans.checks.plan import faults, geos_flags_ignored
 from floorplans.repair.geometry import at_text
 from floorplans.repair.walls import REACH_M, Change, repair_walls
 from floorplans.toml.writer import dumps
 from floorplans.unchecked import UncheckedPlan
 from floorplans.walls import TOLERANCE_M, Point
+
+_MAX_PASSES = 8
 
 
 @dataclass(frozen=True)
@@ -31,23 +33,40 @@ class RepairedPlan:
 def repair_plan(plan: UncheckedPlan, reach_m: float = REACH_M) -> RepairedPlan:
     """Make walls meet that almost meet, merge duplicate walls, and adjust the outline.
 
+    A plan stays as it is where its repair would have more errors, or would not be final: repairing
+    a repaired plan changes nothing.
+
     Parameters
     ----------
     plan : UncheckedPlan
         Its numbers are valid.
     reach_m : float
-        Nothing is moved farther than this plus the walls' thickness [m].
+        In one pass, nothing is moved farther than this plus the walls' thickness [m].
     """
+    plan = UncheckedPlan(
+        **{field.name: getattr(plan, field.name) for field in fields(UncheckedPlan)}
+    )
+    repaired, changes = plan, ()
+    for _ in range(_MAX_PASSES):
+        with geos_flags_ignored():
+            once = _repair_once(repaired, reach_m)
+        if not once.changes:
+            return RepairedPlan(repaired, changes)
+        repaired, changes = once.plan, (*changes, *once.changes)
+    return RepairedPlan(plan, ())
+
+
+def _repair_once(plan: UncheckedPlan, reach_m: float) -> RepairedPlan:
     walls, changes = repair_walls(plan.walls, reach_m)
-    repaired = replace(plan, walls=walls) if changes else plan
-    adjusted, moves = _outline_on_walls(repaired, reach_m)
-    if _n_faults(adjusted) < _n_faults(repaired):
-        return RepairedPlan(adjusted, (*changes, *moves))
-    return RepairedPlan(repaired, changes)
+    repaired = RepairedPlan(replace(plan, walls=walls) if changes else plan, changes)
+    outline, moves = _outline_on_walls(repaired.plan, reach_m)
+    adjusted = RepairedPlan(outline, (*changes, *moves))
+    fewest = min((RepairedPlan(plan, ()), repaired, adjusted), key=_n_faults)
+    return repaired if _n_faults(repaired) == _n_faults(fewest) else fewest
 
 
-def _n_faults(plan: UncheckedPlan) -> int:
-    return sum(1 for _ in building_faults(plan))
+def _n_faults(repaired: RepairedPlan) -> int:
+    return sum(1 for _ in faults(repaired.plan))
 
 
 def _outline_on_walls(plan: UncheckedPlan, reach_m: float) -> tuple[UncheckedPlan, list[Change]]:

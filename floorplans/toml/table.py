@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isfinite
 from typing import cast
 
 from floorplans.errors import Place, PlanError, unknown_name
+from floorplans.values import COORDINATE, check_number, finite_number
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,10 @@ def _coordinates(value: object, names: str, place: Place) -> tuple[float, ...]:
     numbers = _list(value, expected, place)
     if len(numbers) != len(names):
         raise PlanError(f"expected {len(names)} numbers {expected} [m]", place, value)
-    return tuple(_number(number, (*place, index)) for index, number in enumerate(numbers))
+    found = [_number(number, (*place, index)) for index, number in enumerate(numbers)]
+    for index, number in enumerate(found):
+        check_number(number, COORDINATE, (*place, index))
+    return tuple(found)
 
 
 def _list(value: object, expected: str, place: Place) -> list[object]:
@@ -119,9 +122,10 @@ def _list(value: object, expected: str, place: Place) -> list[object]:
 def _number(value: object, place: Place) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise _wrong_type("a number", value, place)
-    if not isfinite(value):
+    number = finite_number(value)
+    if number is None:
         raise PlanError("expected a finite number", place, value)
-    return float(value)
+    return number
 
 
 def _wrong_type(expected: str, value: object, place: Place) -> PlanError:

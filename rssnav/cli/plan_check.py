@@ -12,13 +12,15 @@ from rich.table import Table
 from rich.text import Text
 
 from atomicfiles import atomic_write
-from floorplans import FloorPlan
+from floorplans import FloorPlan, PlanError
 from floorplans.checks.inspection import Finding, inspect
 from floorplans.checks.plan import faults, number_faults
 from floorplans.loading import builtin_names, loads_unchecked, read_text
 from floorplans.repair.plan import RepairedPlan, repair_plan
 from floorplans.repair.walls import Change
-from floorplans.unchecked import PlanFile
+from floorplans.unchecked import PlanFile, UncheckedPlan
+from raytrace import SceneError
+from rssnav import WorldError
 from rssnav.cli.console import note, print_json, print_table
 from rssnav.cli.options import Json, Plan, check_suffix, examples
 from rssnav.cli.plan_summary import print_summary, summary_of
@@ -74,7 +76,7 @@ def check(
             raise typer.BadParameter("a built-in plan cannot be repaired.", param_hint="--fix")
         if any(number_faults(file.plan)):
             _fail(file, origin)
-        repaired = repair_plan(file.plan)
+        repaired = _safe_repair(file.plan)
         changes = repaired.changes
         _write(repaired, text, Path(plan), output)
         if changes:
@@ -82,20 +84,43 @@ def check(
     _report(file, plan, changes, as_json)
 
 
+def _safe_repair(plan: UncheckedPlan) -> RepairedPlan:
+    """Repair a plan; return it unchanged if what would be written is not usable and it is."""
+    repaired = repair_plan(plan)
+    if not repaired.changes:
+        return repaired
+    written = loads_unchecked(repaired.toml()).plan
+    if written == repaired.plan and (_is_usable(written) or not _is_usable(plan)):
+        return repaired
+    return RepairedPlan(plan, ())
+
+
+def _is_usable(plan: UncheckedPlan) -> bool:
+    """Whether a plan has no errors and its source can be reached."""
+    try:
+        checked = FloorPlan.of(plan)
+        scene_of(checked)
+        reaches(checked)
+    except (PlanError, SceneError, WorldError):
+        return False
+    return True
+
+
 def _write(repaired: RepairedPlan, old_text: str, path: Path, output: Path | None) -> None:
     """Write a repaired plan; keep the old one beside it where it is replaced."""
     if not repaired.changes:
-        note("nothing to repair")
+        note("nothing to repair safely")
         return
     target = output or path
-    if target == path:
+    in_place = target.resolve() == path.resolve()
+    if in_place:
         with atomic_write(path.with_name(path.name + ".bak")) as beside:
             beside.write_text(old_text, encoding="utf-8", newline="\n")
     with atomic_write(target) as beside:
         beside.write_text(repaired.toml(), encoding="utf-8", newline="\n")
     for change in repaired.changes:
         note(f"repaired {change}")
-    kept = f"; the old plan is in {path.name}.bak" if target == path else ""
+    kept = f"; the old plan is in {path.name}.bak" if in_place else ""
     note(f"wrote {target}{kept}")
 
 

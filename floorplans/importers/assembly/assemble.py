@@ -9,7 +9,6 @@ import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
-from floorplans.checks.walls import check_positive
 from floorplans.errors import PlanError, unknown_name
 from floorplans.importers.assembly.openings import attach_openings, close_gaps
 from floorplans.importers.assembly.outline import Storey, find_outline
@@ -40,12 +39,11 @@ from floorplans.plan import FloorPlan
 from floorplans.repair.collinear import merge_lines
 from floorplans.repair.geometry import DECIMALS, Change, tidy_point
 from floorplans.repair.walls import REACH_M, repair_walls
+from floorplans.values import LENGTH, MAX_SIDE_M, MAX_WALLS, check_number
 from floorplans.walls import TOLERANCE_M, Wall
 
 THICKNESS_FRACTION = 0.3
 """Collinear walls are joined where their thicknesses differ by at most this fraction."""
-MAX_WALLS = 20_000
-MAX_SIDE_M = 2_000.0
 
 
 @dataclass(frozen=True)
@@ -124,7 +122,7 @@ def _check(draft: Draft, options: ImportOptions) -> None:
     for key in ("height_m", "wall_thickness_m", "tolerance_m"):
         value = getattr(options, key)
         if value is not None:
-            check_positive(value, (key,))
+            check_number(value, LENGTH, (key,))
     for key in ("wall_material", "floor_material", "ceiling_material"):
         name = getattr(options, key)
         if name is not None and name not in MATERIALS:

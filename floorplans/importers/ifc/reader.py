@@ -26,8 +26,7 @@ from floorplans.importers.ifc.file import Model, Storey, open_model, scale_of, s
 from floorplans.importers.ifc.materials import dominant_material, layer_count
 from floorplans.importers.ifc.shapes import Body, Scale, bodies
 from floorplans.importers.ifc.walls import ReadWall, read_filling, read_wall
-
-MAX_WALLS = 20_000
+from floorplans.values import MAX_WALLS
 
 _DAMAGED = (
     ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, ShapelyError,
