@@ -96,11 +96,6 @@ class PlanMaterial:
         """Of all layers [m]; None for a dielectric, whose thickness the wall states."""
         return sum(layer.thickness_m for layer in self.layers) if self.layers else None
 
-    @property
-    def is_symmetric(self) -> bool:
-        """Whether both sides are the same, as for a wall they must be."""
-        return self.layers == self.layers[::-1]
-
 
 PARAMETERS = {
     "a": Range(1.0, 1e6),
@@ -172,10 +167,8 @@ def check_material(name: str, place: Place, own: Own = MappingProxyType({})) -> 
         raise PlanError(unknown_name("material", name, (*MATERIALS, *own)), place, name)
 
 
-def check_slab(
-    name: str, thickness_m: float, own: Own, place: Place, key: str = "", *, is_wall: bool = False
-) -> None:
-    """Check that a sheet's material is known and fits its thickness and position.
+def check_slab(name: str, thickness_m: float, own: Own, place: Place, key: str = "") -> None:
+    """Check that a sheet's material is known and fits its thickness.
 
     Parameters
     ----------
@@ -187,8 +180,6 @@ def check_slab(
         Of the sheet's table, for the message.
     key
         Prefix of ``material`` and ``thickness_m`` in the names of the keys.
-    is_wall
-        Whether waves meet it from both sides.
 
     Raises
     ------
@@ -204,11 +195,4 @@ def check_slab(
             f"the layers of {name} are {layers_m:g} m thick in total; give that, or leave it out",
             (*place, f"{key}thickness_m"),
             thickness_m,
-        )
-    if is_wall and not own[name].is_symmetric:
-        raise PlanError(
-            "a wall is one sheet met from both sides, and these layers are not symmetric; "
-            "make them symmetric (floors and ceilings need not be)",
-            at,
-            name,
         )

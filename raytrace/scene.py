@@ -78,20 +78,20 @@ class Scene:
             (n_faces,) index of each face's material.
         materials
             (material, thickness [m]) of each index; a name means the built-in material. A layered
-            one must be the same from both sides in a wall; in a floor or ceiling its first
-            layer is the one the room sees.
+            one reflects in a wall as the mean of its two sides (`Layered.coefficients`); in a floor
+            or ceiling its first layer is the one the room sees.
         edition
             Of ITU-R P.2040, for materials given by name.
 
         Raises
         ------
         SceneError
-            For a mesh that is not an extruded building, walls that do not enclose the floor,
-            unknown materials, and walls whose layers differ from side to side.
+            For a mesh that is not an extruded building, walls that do not enclose the floor, and
+            unknown materials.
         """
         slabs = tuple(Slab.of(material, thickness, edition) for material, thickness in materials)
         _check_indices(face_material, len(mesh.faces), len(slabs))
-        _check_both_sides(mesh, face_material, slabs)
+        face_material, slabs = _with_slabs_of_walls(mesh, face_material, slabs)
         sheets = read_sheets(mesh, face_material)
         cells = cut_into_cells(sheets)
         return cls(
@@ -122,14 +122,15 @@ def _check_indices(face_material: NDArray[np.int64], n_faces: int, n_slabs: int)
         )
 
 
-def _check_both_sides(
-    mesh: trimesh.Trimesh, face_material: NDArray[np.int64], slabs: Sequence[Slab]
-) -> None:
-    """Refuse walls whose two sides would reflect differently: one sheet has one coefficient."""
-    upright = np.abs(mesh.face_normals[:, 2]) < 0.5
-    for index in np.unique(face_material[upright]):
-        if not slabs[index].is_symmetric:
-            raise SceneError(
-                f"a wall of {slabs[index].material.name}, whose layers differ from side to side: a "
-                "wall is one sheet seen from both; make the layers symmetric"
-            )
+def _with_slabs_of_walls(
+    mesh: trimesh.Trimesh, face_material: NDArray[np.int64], slabs: tuple[Slab, ...]
+) -> tuple[NDArray[np.int64], tuple[Slab, ...]]:
+    """Append slabs for walls whose sides differ: one sheet has one reflection coefficient."""
+    vertical = np.abs(mesh.face_normals[:, 2]) < 0.5
+    found = np.array(face_material)
+    for index in np.unique(found[vertical]):
+        wall = slabs[index].as_wall()
+        if wall is not slabs[index]:
+            found[vertical & (found == index)] = len(slabs)
+            slabs = (*slabs, wall)
+    return found, slabs

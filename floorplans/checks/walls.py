@@ -44,7 +44,7 @@ def check_wall(wall: Wall, ceiling_m: float, own: Own, place: Place) -> None:
             "give two different points",
             place,
         )
-    check_slab(wall.material, wall.thickness_m, own, place, is_wall=True)
+    check_slab(wall.material, wall.thickness_m, own, place)
     check_number(wall.thickness_m, LENGTH, (*place, "thickness_m"))
     check_number(wall.height_m, LENGTH, (*place, "height_m"))
     if wall.height_m > ceiling_m:
@@ -139,7 +139,7 @@ def _check_filling(opening: Opening, wall_m: float, own: Own, place: Place) -> N
     opening_kind(opening.kind, (*place, "kind"))
     if opening.material is not None:
         thickness_m = wall_m if opening.thickness_m is None else opening.thickness_m
-        check_slab(opening.material, thickness_m, own, place, is_wall=True)
+        check_slab(opening.material, thickness_m, own, place)
     if opening.thickness_m is not None:
         check_number(opening.thickness_m, LENGTH, (*place, "thickness_m"))
         if opening.material is None:

@@ -5,14 +5,14 @@ or one of two ideals: `PERFECT_CONDUCTOR` and `ABSORBER`. The built-in dielectri
 Recommendation ITU-R P.2040, in the edition asked for (`raytrace.radio.itu`, docs/materials.md).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from math import inf
 from typing import NamedTuple
 
 import numpy as np
 
-from raytrace.arrays import Floats
+from raytrace.arrays import Complexes, Floats
 from raytrace.constants import TWO_PI, VACUUM_PERMITTIVITY
 from raytrace.errors import SceneError
 from raytrace.radio.itu import DEFAULT_EDITION, TABLES, Row
@@ -90,10 +90,13 @@ class Layered:
         Its name in a floor plan.
     layers
         At least one.
+    from_both_sides
+        Whether the slab reflects as the mean of its two sides, as a wall does: see `coefficients`.
     """
 
     name: str
     layers: tuple[Layer, ...]
+    from_both_sides: bool = False
 
     @property
     def thickness_m(self) -> float:
@@ -102,15 +105,32 @@ class Layered:
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether both sides reflect alike, as a wall requires."""
+        """Whether the layers are the same from both sides."""
         return self.layers == self.layers[::-1]
 
     def coefficients(
         self, thickness_m: float, frequency_hz: float, cos_incidence: Floats
     ) -> SlabCoefficients:
-        """Reflection and transmission in air; the thickness is that of the layers."""
+        """Reflection and transmission in air; the thickness is that of the layers.
+
+        Transmission is the same from both sides, by reciprocity. Reflection from both sides has
+        their mean power and the phase of their mean field.
+        """
         stack = [(m.complex_permittivity(frequency_hz), d) for m, d in self.layers]
-        return stack_coefficients(stack, frequency_hz, cos_incidence)
+        front = stack_coefficients(stack, frequency_hz, cos_incidence)
+        if not self.from_both_sides or self.is_symmetric:
+            return front
+        back = stack_coefficients(stack[::-1], frequency_hz, cos_incidence)
+        return front._replace(
+            r_te=_mean_reflection(front.r_te, back.r_te),
+            r_tm=_mean_reflection(front.r_tm, back.r_tm),
+        )
+
+
+def _mean_reflection(front: Complexes, back: Complexes) -> Complexes:
+    """Reflection with the mean power of two, and the phase of their sum."""
+    power = (np.abs(front) ** 2 + np.abs(back) ** 2) / 2
+    return np.sqrt(power) * np.exp(1j * np.angle(front + back))
 
 
 @dataclass(frozen=True)
@@ -217,7 +237,8 @@ class Slab(NamedTuple):
             )
         return cls(material, float(thickness_m))
 
-    @property
-    def is_symmetric(self) -> bool:
-        """Whether both sides reflect alike."""
-        return not isinstance(self.material, Layered) or self.material.is_symmetric
+    def as_wall(self) -> "Slab":
+        """Return the slab as a wall has it: with one reflection for both of its sides."""
+        if not isinstance(self.material, Layered) or self.material.is_symmetric:
+            return self
+        return self._replace(material=replace(self.material, from_both_sides=True))

@@ -43,6 +43,24 @@ def test_own_materials_reach_the_tracer() -> None:
     assert slab.thickness_m == pytest.approx(0.1)
 
 
+def test_only_walls_reflect_as_the_mean_of_both_sides() -> None:
+    lined = PlanMaterial("lined", layers=(MaterialLayer("board", 0.02), MaterialLayer("air", 0.08)))
+    partition = replace(ROOM.walls[-1], material="lined", thickness_m=0.1)
+    plan = replace(
+        ROOM,
+        walls=(*ROOM.walls[:-1], partition),
+        materials=(BOARD, lined),
+        floor_material="lined",
+        floor_thickness_m=0.1,
+    )
+    scene = scene_of(plan)
+    both = {slab.material for slab in scene.slabs if slab.material.name == "lined"}
+    floor = scene.slabs[scene.floor_material].material
+    assert isinstance(floor, Layered)
+    assert both == {floor, replace(floor, from_both_sides=True)}
+    assert not floor.from_both_sides
+
+
 def test_edition_is_the_one_asked_for_then_the_plans_then_the_newest() -> None:
     of_plan = replace(ROOM, material_edition="P.2040-3")
     assert scene_of(ROOM).material_edition == "P.2040-4"

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from raytrace.constants import SPEED_OF_LIGHT
-from raytrace.radio.materials import MATERIALS
+from raytrace.radio.materials import MATERIALS, Layer, Layered, Slab
 from raytrace.radio.slabs import slab_coefficients
 from raytrace.radio.tables import SLAB_TABLE_STEPS, slab_tables
 
@@ -120,3 +120,41 @@ def test_the_table_holds_both_polarisations(name: str) -> None:
     tm, mix = table[:-1, 0] + 1j * table[:-1, 1], table[:-1, 2] + 1j * table[:-1, 3]
     np.testing.assert_allclose(tm, c.r_tm, atol=1e-12)
     np.testing.assert_allclose(mix * (1.0 - cos_i**2) - tm, c.r_te, atol=1e-9)
+
+
+COSINES = np.linspace(0.05, 1.0, 40)
+CAVITY_WALL = Layered(
+    "cavity_wall",
+    tuple(
+        Layer(MATERIALS[name], thickness_m)
+        for name, thickness_m in (("brick", 0.09), ("air", 0.192), ("plasterboard", 0.016))
+    ),
+)
+REVERSED = Layered("reversed", CAVITY_WALL.layers[::-1])
+
+
+@pytest.mark.parametrize("frequency_hz", [1.8e9, 2.4e9, 5.2e9])
+def test_a_wall_transmits_like_its_layers_and_reflects_the_mean_power_of_its_sides(
+    frequency_hz: float,
+) -> None:
+    front, back, wall = (
+        material.coefficients(0.298, frequency_hz, COSINES)
+        for material in (CAVITY_WALL, REVERSED, Slab.of(CAVITY_WALL, 0.298).as_wall().material)
+    )
+    for name in ("t_te", "t_tm"):
+        np.testing.assert_allclose(getattr(back, name), getattr(front, name), atol=1e-12)
+        np.testing.assert_array_equal(getattr(wall, name), getattr(front, name))
+    for t, r in (("t_te", "r_te"), ("t_tm", "r_tm")):
+        powers = [np.abs(getattr(side, r)) ** 2 for side in (front, back, wall)]
+        np.testing.assert_allclose(powers[2], (powers[0] + powers[1]) / 2, rtol=1e-12)
+        assert np.all(powers[2] + np.abs(getattr(wall, t)) ** 2 < 1.0)
+    assert wall.r_te[-1] == pytest.approx(-wall.r_tm[-1])
+
+
+def test_a_wall_of_layers_is_the_same_from_either_side() -> None:
+    one, other = (
+        Slab.of(material, 0.298).as_wall().material.coefficients(0.298, 2.4e9, COSINES)
+        for material in (CAVITY_WALL, REVERSED)
+    )
+    for a, b in zip(one, other, strict=True):
+        np.testing.assert_allclose(a, b, atol=1e-12)
