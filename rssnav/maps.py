@@ -20,6 +20,7 @@ from raytrace import (
 from raytrace.results.map_file import is_radio_map
 from raytrace.trace import TRACER_VERSION
 from rssnav.cost_notice import announcement
+from rssnav.keeping import save_or_rescue
 from rssnav.scenes import PlanScene, edition_of, scene_of
 
 Progress = Callable[[int, int], None]
@@ -148,6 +149,8 @@ def make_map(
         Where the tracer cannot work with the plan.
     MapFileError
         Where `path` holds a file that is no radio map, which is left alone unless forced.
+    OSError
+        Where the map cannot be saved; the message says where it is kept instead, if anywhere.
     """
     if not 0.0 < height_m < plan.height_m:
         raise ValueError(
@@ -174,7 +177,7 @@ def make_map(
     if not force and (current := _current_map(request, path, notice)) is not None:
         return current
     radio_map = compute()
-    radio_map.save(path)
+    save_or_rescue(radio_map.save, path)
     return radio_map
 
 

@@ -27,8 +27,11 @@ from rssnav.schedule import NO_STEP_LIMIT, Schedule
 from rssnav.world import GridWorld
 
 Progress = Callable[[int, int], None]
+Checkpoint = Callable[[TrainingResult], None]
 
 _CHUNK_EPISODES = 64  # between two checks for an interrupt
+_CHECKPOINT_S = 3.0
+_CHECKPOINT_FRACTION = 0.05  # of the time, at most
 
 
 class TrainingInterrupted(KeyboardInterrupt):
@@ -73,6 +76,7 @@ def train(
     keep_q: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
+    checkpoint: Checkpoint | None = None,
     only_runs: Sequence[int] | None = None,
     resume: TrainingResult | None = None,
 ) -> TrainingResult:
@@ -109,6 +113,9 @@ def train(
         Number of threads; all cores by default.
     progress : callable, optional
         Called as ``progress(done, runs)`` whenever realisations finish.
+    checkpoint : callable, optional
+        Called every few seconds with all finished realisations, `resume` included, to save them;
+        less often if that takes more than a twentieth of the time.
     only_runs : sequence of int, optional
         Train only these of the realisations 0..runs-1; each is the same as in the full training.
     resume : TrainingResult, optional
@@ -138,11 +145,14 @@ def train(
     if resume is not None:
         resume.check_same_training(world, agent, learning, schedule)
         run_ids = [k for k in run_ids if k not in resume.run_ids]
-    realisations, interrupted = _on_threads(trainer, run_ids, n_threads(threads), progress)
-    result = resume
-    if realisations:
+
+    def combined(realisations: Sequence[_Realisation]) -> TrainingResult:
         trained = _collect(trainer, agent, realisations)
-        result = trained if resume is None else resume.merged(trained)
+        return trained if resume is None else resume.merged(trained)
+
+    monitor = _Monitor(runs - len(run_ids), runs, progress, checkpoint, combined)
+    realisations, interrupted = _on_threads(trainer, run_ids, n_threads(threads), monitor)
+    result = combined(realisations) if realisations else resume
     if interrupted or result is None:
         raise TrainingInterrupted(result)
     return result
@@ -253,19 +263,57 @@ class _Trainer:
         return self.schedule.episodes
 
 
+class _Monitor:
+    """Reports finished realisations, and hands them over to be saved.
+
+    Parameters
+    ----------
+    before, runs
+        Realisations that are finished before, and all that are wanted.
+    progress, checkpoint
+        As of :func:`train`.
+    combined
+        Makes a result of realisations.
+    """
+
+    def __init__(
+        self,
+        before: int,
+        runs: int,
+        progress: Progress | None,
+        checkpoint: Checkpoint | None,
+        combined: Callable[[Sequence[_Realisation]], TrainingResult],
+    ) -> None:
+        self._before, self._runs = before, runs
+        self._progress, self._checkpoint = progress, checkpoint
+        self._combined = combined
+        self._finished: list[_Realisation] = []
+        self._next_s = time.monotonic() + _CHECKPOINT_S
+
+    def __call__(self, realisation: _Realisation) -> None:
+        """Note that a realisation is finished."""
+        self._finished.append(realisation)
+        done = self._before + len(self._finished)
+        if self._progress is not None:
+            self._progress(done, self._runs)
+        begin_s = time.monotonic()
+        if self._checkpoint is not None and done < self._runs and begin_s >= self._next_s:
+            self._checkpoint(self._combined(self._finished))
+            end_s = time.monotonic()
+            self._next_s = end_s + max(_CHECKPOINT_S, (end_s - begin_s) / _CHECKPOINT_FRACTION)
+
+
 def _on_threads(
-    trainer: _Trainer, run_ids: Sequence[int], threads: int, progress: Progress | None
+    trainer: _Trainer, run_ids: Sequence[int], threads: int, monitor: _Monitor
 ) -> tuple[list[_Realisation], bool]:
     """Train realisations on a pool; returns the finished ones, and whether Ctrl-C stopped it."""
     interrupted = False
-    before = trainer.schedule.runs - len(run_ids)
     with ThreadPoolExecutor(threads) as pool:
         futures = [pool.submit(trainer, run_id) for run_id in run_ids]
         try:
-            for done, future in enumerate(as_completed(futures), start=1):
-                future.result()
-                if progress is not None:
-                    progress(before + done, trainer.schedule.runs)
+            for future in as_completed(futures):
+                if (finished := future.result()) is not None:
+                    monitor(finished)
         except KeyboardInterrupt:
             interrupted = True
         finally:

@@ -68,51 +68,80 @@ def run_experiments(
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Same seed, same result.")] = 0,
     resume: Annotated[
         bool,
-        typer.Option("--resume/--no-resume", help="Reuse existing trainings."),
+        typer.Option(
+            "--resume/--no-resume", help="Continue from existing trainings, or start over."
+        ),
     ] = True,
     style: Style = None,
     threads: Threads = None,
 ) -> None:
     """Run the whole paper, or a study beyond it: maps, trainings, figures, tables, a report.
 
-    Existing results that are up to date are reused. After Ctrl-C the same command continues.
+    Existing results that are up to date are reused. Finished runs are kept every few seconds: after
+    Ctrl-C or a crash the same command continues from there.
     """
-    if what is not What.PAPER:
-        if runs is not None or not resume:
-            raise typer.BadParameter("--runs and --no-resume apply to the paper only.")
-        return _run_study(what, out, quick, seed, style, threads)
-    from rssnav.experiments.paper import run_paper
-    from rssnav.pictures.style import chosen_style
-
+    if what is not What.PAPER and runs is not None:
+        raise typer.BadParameter("--runs applies to the paper only.")
     try:
-        with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
-            paper = run_paper(
-                out,
-                quick=quick,
-                runs=runs,
-                seed=seed,
-                threads=threads,
-                resume=resume,
-                progress=show,
-                notice=note,
-            )
+        if what is What.PAPER:
+            _run_paper(out, quick, runs, seed, threads, resume, style)
+        else:
+            _run_study(what, out, quick, seed, threads, resume, style)
     except KeyboardInterrupt as interrupt:
         raise KeyboardInterrupt(
             f"interrupted; finished maps and runs are kept in {out}, and the same command "
             "continues from there"
         ) from interrupt
+
+
+def _run_paper(
+    out: Path,
+    quick: bool,
+    runs: int | None,
+    seed: int,
+    threads: int | None,
+    resume: bool,
+    style: str | None,
+) -> None:
+    from rssnav.experiments.paper import run_paper
+    from rssnav.pictures.style import chosen_style
+
+    with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
+        paper = run_paper(
+            out,
+            quick=quick,
+            runs=runs,
+            seed=seed,
+            threads=threads,
+            resume=resume,
+            progress=show,
+            notice=note,
+        )
     _print(paper)
 
 
 def _run_study(
-    what: What, out: Path, quick: bool, seed: int, style: str | None, threads: int | None
+    what: What,
+    out: Path,
+    quick: bool,
+    seed: int,
+    threads: int | None,
+    resume: bool,
+    style: str | None,
 ) -> None:
     from rssnav.experiments.studies import STUDIES, run_study
     from rssnav.pictures.style import chosen_style
 
     with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
         result = run_study(
-            STUDIES[what], out, quick=quick, seed=seed, threads=threads, progress=show
+            STUDIES[what],
+            out,
+            quick=quick,
+            seed=seed,
+            threads=threads,
+            resume=resume,
+            progress=show,
+            notice=note,
         )
     for file in result.files:
         print(file)

@@ -30,8 +30,10 @@ from rssnav import (
 from rssnav.cli.console import note, one_progress, print_json, print_pairs
 from rssnav.cli.options import Json, Plan, Threads, examples
 from rssnav.discrete_states import StateRule
+from rssnav.keeping import lenient, save_or_rescue
 from rssnav.kernel_cache import learning_cache
 from rssnav.maps import Progress, require_map_for
+from rssnav.training import Checkpoint
 
 EPISODES = 1000
 EPISODES_TO_CONVERGE = 20_000
@@ -165,7 +167,8 @@ def train_agent(
 ) -> None:
     """Train an agent to fly from a plan's start to its source, in many realisations.
 
-    Ctrl-C keeps the finished runs in FILE; the same command then continues from there.
+    Finished runs are kept in FILE every few seconds: after Ctrl-C or a crash the same command
+    continues from there.
     """
     loaded = floorplans.load(plan)
     radio_map = RadioMap.load(map_file)
@@ -275,7 +278,7 @@ class _Job:
         except TrainingInterrupted as interrupt:
             raise KeyboardInterrupt(self._keep(interrupt.result)) from interrupt
         if self._output is not None and result is not earlier:
-            result.save(self._output)
+            save_or_rescue(result.save, self._output)
         return result
 
     def _train(
@@ -287,6 +290,7 @@ class _Job:
                 self._agent,
                 threads=threads,
                 progress=progress,
+                checkpoint=self._checkpoint(),
                 resume=earlier,
                 **self._schedule,
             )
@@ -294,6 +298,11 @@ class _Job:
             if earlier is None:
                 raise
             raise ResultFileError(f"{self._output}: {error}; --force replaces it") from error
+
+    def _checkpoint(self) -> Checkpoint | None:
+        """Function that saves the finished runs while others are trained."""
+        path = self._output
+        return None if path is None else lenient(lambda finished: finished.save(path), note)
 
     def _keep(self, finished: TrainingResult | None) -> str:
         """Save finished runs; return a message that says what was kept."""
@@ -303,7 +312,7 @@ class _Job:
         done = f"interrupted; {finished.run_ids.size} of {runs} runs are finished"
         if self._output is None:
             return f"{done} and lost, as no -o FILE was given to keep them"
-        finished.save(self._output)
+        save_or_rescue(finished.save, self._output)
         return f"{done} and kept in {self._output}; the same command continues from there"
 
 

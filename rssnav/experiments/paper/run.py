@@ -29,7 +29,9 @@ from rssnav.experiments.paper.tables import TABLES
 from rssnav.experiments.paper.trainings import TrainingPlan
 from rssnav.experiments.progress import Notice, StageProgress, ignore
 from rssnav.experiments.tables import Table
+from rssnav.experiments.training_store import TrainingStore
 from rssnav.pictures.style import save_figure
+from rssnav.result_file import ResultFileError
 from rssnav.results import TrainingResult
 
 QUICK_RUNS = 8
@@ -128,14 +130,16 @@ def run_paper(
     PlanError, SceneError, WorldError, MapFileError
         For a plan or map that cannot be used.
     TrainingInterrupted
-        On Ctrl-C while training; finished realisations are saved, and the next call continues.
+        On Ctrl-C while training. Finished realisations are saved every few seconds and then, and
+        the next call continues from there.
     """
     if len(plans) != 2:
         raise ValueError(f"plans: {len(plans)} given; the paper needs two")
     out, progress, notice = Path(out), progress or ignore, notice or ignore
     runs = (QUICK_RUNS if quick else RUNS) if runs is None else runs
     record = Record(seed, runs, quick, tuple(str(plan) for plan in plans))
-    plan = TrainingPlan(out / "training" / f"{runs}-runs", runs, seed, threads, resume, notice)
+    store = TrainingStore(out / "training" / f"{runs}-runs", threads, resume, notice)
+    plan = TrainingPlan(store, runs, seed)
     run = _Run(out, plan, record, threads, progress, notice)
     scenarios = _load_scenarios(run, plans)
     results = _train(run, scenarios)
@@ -157,23 +161,39 @@ def report_again(
     ------
     FileNotFoundError
         When there is no earlier run in ``out``.
+    ResultFileError
+        When its summary is damaged.
     """
-    summary = Path(out) / "summary.json"
-    if not summary.is_file():
-        raise FileNotFoundError(
-            f"{summary}: there is no run of the paper here; `rssnav experiments` makes one"
-        )
-    settings = json.loads(summary.read_text(encoding="utf-8"))["run"]
+    settings = _settings(Path(out) / "summary.json")
     return run_paper(
         out,
-        quick=settings["quick"],
-        runs=settings["runs"],
-        seed=settings["seed"],
-        plans=settings["plans"],
+        quick=settings.quick,
+        runs=settings.runs,
+        seed=settings.seed,
+        plans=settings.plans,
         threads=threads,
         progress=progress,
         notice=notice,
     )
+
+
+def _settings(summary: Path) -> Record:
+    """Read what an earlier run was made with from its summary."""
+    if not summary.is_file():
+        raise FileNotFoundError(
+            f"{summary}: there is no run of the paper here; `rssnav experiments` makes one"
+        )
+    try:
+        found = json.loads(summary.read_text(encoding="utf-8"))["run"]
+        values = found["seed"], found["runs"], found["quick"], tuple(found["plans"])
+        types = [type(value) for value in (*values, *values[3])]
+    except (ValueError, LookupError, TypeError, RecursionError) as error:
+        raise ResultFileError(f"{summary} is damaged ({error}); run the paper again") from error
+    if types != [int, int, bool, tuple, str, str] or min(values[:2]) < 0 or values[1] < 1:
+        raise ResultFileError(
+            f"{summary} is damaged: run = {found!r:.200}, expected seed, runs, quick and two plans"
+        )
+    return Record(*values)
 
 
 def _load_scenarios(run: _Run, plans: Sequence[str | Path]) -> dict[int, Scenario]:
@@ -203,7 +223,7 @@ def _train(run: _Run, scenarios: dict[int, Scenario]) -> dict[Configuration, Tra
                 run.record.trained[key.label] = time.perf_counter() - begin_s
             counter(run.plan.runs, run.plan.runs)
     if reused := len(results) - len(run.record.trained):
-        run.notice(f"{reused} of {len(results)} trainings were reused from {run.plan.folder}")
+        run.notice(f"{reused} of {len(results)} trainings were reused from {run.plan.store.folder}")
     return results
 
 

@@ -1,13 +1,14 @@
 """What a study is, and the one function that runs it.
 
 A study is data: its pieces of work, and functions that measure a piece and that make tables and
-figures of all outcomes. A piece is a hashable value that says completely what is measured, so the
-outcomes of finished pieces can be kept by it. To add a study, describe it and list it in
-:mod:`rssnav.experiments.studies`.
+figures of all outcomes. A piece is a hashable value that says completely what is measured. Its
+trainings are kept in files, so a study that was interrupted or killed continues where it was. To
+add a study, describe it and list it in :mod:`rssnav.experiments.studies`.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,7 @@ from typing import Generic, TypeVar
 
 from matplotlib.figure import Figure
 
+from rssnav.agents import Agent
 from rssnav.experiments.paper.scenarios import (
     PLANS,
     Scenario,
@@ -22,9 +24,14 @@ from rssnav.experiments.paper.scenarios import (
     load_scenarios,
     make_worlds,
 )
-from rssnav.experiments.progress import StageProgress, ignore
+from rssnav.experiments.progress import Notice, StageProgress, ignore
 from rssnav.experiments.tables import Table
+from rssnav.experiments.training_store import TrainingStore
+from rssnav.learning_parameters import QLearning
 from rssnav.pictures.style import save_figure
+from rssnav.results import TrainingResult
+from rssnav.schedule import NO_STEP_LIMIT, Schedule
+from rssnav.world import GridWorld
 
 PieceT = TypeVar("PieceT", bound=Hashable)
 OutcomeT = TypeVar("OutcomeT")
@@ -44,15 +51,44 @@ class Conditions:
         Realisations of each training.
     seed : int
         Seed of all trainings.
-    threads : int or None
-        Threads; all cores for None.
+    store : TrainingStore
+        Where trainings are kept.
     """
 
     scenarios: dict[int, Scenario]
     worlds: Worlds
     runs: int
     seed: int
-    threads: int | None
+    store: TrainingStore
+
+    def train(
+        self,
+        name: str,
+        world: GridWorld,
+        agent: Agent,
+        episodes: int,
+        *,
+        learning: QLearning | None = None,
+        until_converged: bool = False,
+        max_total_steps: int = NO_STEP_LIMIT,
+    ) -> TrainingResult:
+        """Train an agent, or continue a training; see :func:`rssnav.train`.
+
+        Parameters
+        ----------
+        name : str
+            Says completely what is trained, apart from runs and seed.
+        world, agent, episodes, learning, until_converged, max_total_steps
+            As of :func:`rssnav.train`; a run that converges stops at once.
+
+        Raises
+        ------
+        TrainingInterrupted
+            On Ctrl-C.
+        """
+        schedule = Schedule(self.runs, episodes, self.seed, until_converged, 1, (), max_total_steps)
+        file = re.sub(r"[^\w.]+", "-", name)
+        return self.store.train(file, world, agent, learning or QLearning(), schedule)[0]
 
 
 @dataclass(frozen=True)
@@ -107,7 +143,9 @@ def run_study(
     quick: bool = False,
     seed: int = 0,
     threads: int | None = None,
+    resume: bool = True,
     progress: StageProgress | None = None,
+    notice: Notice | None = None,
 ) -> StudyResult:
     """Measure every piece of a study; write its tables and figures below ``out``.
 
@@ -116,15 +154,20 @@ def run_study(
     study : Study
         The study.
     out : str or Path
-        Folder of ``maps/``, which are traced when missing, and of ``tables/`` and ``figures/``.
+        Folder of ``maps/``, which are traced when missing, of ``training/``, from which finished
+        runs are reused, and of ``tables/`` and ``figures/``.
     quick : bool
         Few realisations.
     seed : int
         Same seed, same results, for any number of threads.
     threads : int, optional
         Threads; all cores by default.
+    resume : bool
+        Reuse existing trainings; otherwise train again.
     progress : callable, optional
         Called as ``progress(stage, done, total)``, with a stage per map and one for the study.
+    notice : callable, optional
+        Called with sentences: what is continued or trained again, and why.
 
     Returns
     -------
@@ -135,14 +178,16 @@ def run_study(
     PlanError, SceneError, WorldError, MapFileError
         For a plan or map that cannot be used.
     TrainingInterrupted
-        On Ctrl-C while training.
+        On Ctrl-C while training. Finished realisations are saved every few seconds and then, and
+        the next call continues from there.
     """
-    out, progress = Path(out), progress or ignore
+    out, progress, notice = Path(out), progress or ignore, notice or ignore
     scenarios = load_scenarios(
         PLANS, out / "maps", threads=threads, progress=progress, notice=ignore
     )
     runs = study.quick_runs if quick else study.runs
-    conditions = Conditions(scenarios, make_worlds(scenarios), runs, seed, threads)
+    store = TrainingStore(out / "training" / f"{study.name}-{runs}-runs", threads, resume, notice)
+    conditions = Conditions(scenarios, make_worlds(scenarios), runs, seed, store)
     outcomes: list[OutcomeT] = []
     for done, piece in enumerate(study.pieces):
         progress(study.name, done, len(study.pieces))

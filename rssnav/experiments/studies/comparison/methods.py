@@ -31,7 +31,6 @@ from rssnav.optimal_flights import (
 from rssnav.results import TrainingResult
 from rssnav.schedule import NO_STEP_LIMIT
 from rssnav.searchers import ParticleFilter, RandomWalk, RssAscent, Searcher, search
-from rssnav.training import train
 from rssnav.world import GridWorld
 
 STEADY, NOISE = Fluctuation(), Fluctuation(sigma_db=2.0)
@@ -116,17 +115,14 @@ class Learners:
         yield _oracle(f"value iteration, {label} rewards", "plan and rewards", task.optimum)
         budget = NO_STEP_LIMIT
         for rule, learning in _RULES.items():
-            result = train(
+            result = conditions.train(
+                f"{world.plan_name} {self.agent} {world.speed}mps {rule}",
                 world,
                 task.agent,
-                runs=conditions.runs,
-                episodes=EPISODE_LIMIT,
-                seed=conditions.seed,
+                EPISODE_LIMIT,
                 learning=learning,
                 until_converged=True,
-                min_episodes=1,
                 max_total_steps=budget,
-                threads=conditions.threads,
             )
             performance = _learner(f"{rule}, {label}", task, result)
             budget = min(budget, int(performance.training_steps.max()))
@@ -155,7 +151,7 @@ class Search:
             runs=conditions.runs,
             seed=conditions.seed,
             fluctuation=self.fluctuation,
-            threads=conditions.threads,
+            threads=conditions.store.threads,
         )
         found = result.found
         yield Performance(

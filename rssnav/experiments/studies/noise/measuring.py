@@ -19,7 +19,6 @@ from rssnav.discrete_states import (
 )
 from rssnav.experiments.studies.study import Conditions
 from rssnav.results import TrainingResult
-from rssnav.training import train
 from rssnav.world import GridWorld
 
 SCENARIOS = (1, 2)
@@ -55,6 +54,15 @@ class Setting:
     rule: RuleName
     width_db: float
     fluctuation: Fluctuation
+
+    @property
+    def name(self) -> str:
+        """Name of its training."""
+        fluctuation = self.fluctuation
+        return (
+            f"scenario{self.scenario} {self.rule} {self.width_db:g}dB "
+            f"sigma {fluctuation.sigma_db:g}dB correlation {fluctuation.correlation:g}"
+        )
 
     def states(self, world: GridWorld) -> StateRule:
         """State rule for a world: intervals cover the readings of its cells."""
@@ -124,15 +132,8 @@ def measure(setting: Setting, conditions: Conditions) -> list[Outcome]:
         On Ctrl-C.
     """
     world = conditions.worlds[setting.scenario, SPEED]
-    result = train(
-        world,
-        RssAgent(setting.states(world), fluctuation=setting.fluctuation),
-        runs=conditions.runs,
-        episodes=EPISODES,
-        seed=conditions.seed,
-        max_total_steps=STEP_LIMIT,
-        threads=conditions.threads,
-    )
+    agent = RssAgent(setting.states(world), fluctuation=setting.fluctuation)
+    result = conditions.train(setting.name, world, agent, EPISODES, max_total_steps=STEP_LIMIT)
     last = _last_episodes(result)
     outcome = Outcome(
         setting=setting,

@@ -13,7 +13,6 @@ from rssnav.experiments.paper.trainings import EPISODE_LIMIT
 from rssnav.experiments.studies.study import Conditions
 from rssnav.learning_parameters import QLearning
 from rssnav.results import TrainingResult
-from rssnav.training import train
 from rssnav.world import GridWorld, WorldError
 
 STEP_LIMIT = 25_000_000
@@ -127,17 +126,14 @@ def measure(trial: Trial, conditions: Conditions) -> list[Outcome]:
     """
     alternative, key = trial.alternative, trial.key
     try:
-        result = train(
+        result = conditions.train(
+            f"{alternative.label} {key.name}",
             _world(trial, conditions),
             AGENTS[key.agent],
-            runs=conditions.runs,
-            episodes=alternative.episodes or EPISODE_LIMIT,
-            seed=conditions.seed,
+            alternative.episodes or EPISODE_LIMIT,
             learning=alternative.learning,
             until_converged=alternative.episodes is None,
-            min_episodes=1,
             max_total_steps=STEP_LIMIT,
-            threads=conditions.threads,
         )
     except WorldError as error:
         none = np.empty(0)

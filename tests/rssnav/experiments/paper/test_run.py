@@ -12,7 +12,8 @@ import pytest
 from small_paper import plan_text, small_data
 
 from rssnav import TrainingInterrupted, TrainingResult
-from rssnav.experiments.paper import report_again, run_paper, trainings
+from rssnav.experiments import training_store
+from rssnav.experiments.paper import report_again, run_paper
 from rssnav.experiments.paper import run as paper
 from rssnav.experiments.paper.claims import CLAIMS
 from rssnav.experiments.paper.data import Configuration
@@ -27,6 +28,7 @@ from rssnav.experiments.paper.tables.optimum import table as optimum_table
 from rssnav.experiments.paper.tables.path_lengths import table as path_lengths
 from rssnav.experiments.paper.trainings import TrainingPlan
 from rssnav.experiments.tables import Column, Table
+from rssnav.experiments.training_store import TrainingStore
 
 RUNS = 2
 
@@ -165,8 +167,9 @@ def test_two_plans_are_needed(tmp_path):
 
 
 def training_plan(folder, said, **changes):
-    settings = {"runs": RUNS, "seed": 0, "threads": 2, "resume": True, **changes}
-    return TrainingPlan(folder, notice=said.append, **settings)
+    settings = {"runs": RUNS, "seed": 0, "resume": True, **changes}
+    store = TrainingStore(folder, 2, settings["resume"], said.append)
+    return TrainingPlan(store, settings["runs"], settings["seed"])
 
 
 KEY = Configuration(1, "rss", 4)
@@ -217,12 +220,12 @@ def test_without_resume_everything_is_trained_again(tmp_path, world):
 def test_an_interrupted_training_goes_on(tmp_path, world, monkeypatch):
     said = []
     whole, _ = training_plan(tmp_path / "whole", said).result(KEY, world)
-    train = trainings.train
+    train = training_store.train
 
     def interrupted(*args, **kwargs):
         raise TrainingInterrupted(train(*args, **kwargs, only_runs=[1]))
 
-    monkeypatch.setattr(trainings, "train", interrupted)
+    monkeypatch.setattr(training_store, "train", interrupted)
     with pytest.raises(TrainingInterrupted):
         training_plan(tmp_path, said).result(KEY, world)
     monkeypatch.undo()

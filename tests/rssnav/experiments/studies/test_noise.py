@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from rssnav import ExactStates, Fluctuation, IntervalStates, RssAgent, ToleranceStates, train
+from rssnav.experiments.progress import ignore
 from rssnav.experiments.studies import run_study
 from rssnav.experiments.studies.noise import figure, measuring
 from rssnav.experiments.studies.noise import study as noise
 from rssnav.experiments.studies.noise.measuring import Outcome, Setting, measure, settings
 from rssnav.experiments.studies.study import Conditions
+from rssnav.experiments.training_store import TrainingStore
 
 
 def test_settings_cross_every_rule_with_every_fluctuation_once():
@@ -36,8 +38,14 @@ def test_rules_become_states(room_world):
 
 
 @pytest.fixture
-def conditions(room_world):
-    return Conditions({}, {(1, measuring.SPEED): room_world}, runs=2, seed=3, threads=1)
+def conditions(room_world, tmp_path):
+    return Conditions(
+        {},
+        {(1, measuring.SPEED): room_world},
+        runs=2,
+        seed=3,
+        store=TrainingStore(tmp_path, 1, True, ignore),
+    )
 
 
 def test_measures_are_those_of_the_last_episodes(room_world, conditions, monkeypatch):

@@ -8,6 +8,7 @@ import pytest
 from rssnav import LocationAgent, QLearning, RssAgent, train
 from rssnav.experiments.paper.data import AGENTS, Configuration
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
+from rssnav.experiments.progress import ignore
 from rssnav.experiments.studies import run_study
 from rssnav.experiments.studies.sensitivity import figure
 from rssnav.experiments.studies.sensitivity import study as sensitivity
@@ -22,6 +23,7 @@ from rssnav.experiments.studies.sensitivity.alternatives import (
 )
 from rssnav.experiments.studies.sensitivity.tables import outcome_table, summary_table
 from rssnav.experiments.studies.study import Conditions
+from rssnav.experiments.training_store import TrainingStore
 
 KEY = Configuration(1, "rss", 1)
 QUICK = Alternative("decay", "quick", QLearning(eta=1e-3, max_steps=500), episodes=None)
@@ -52,8 +54,10 @@ def test_a_map_of_fields_concerns_the_rss_agent_only():
 
 
 @pytest.fixture
-def conditions(room_world):
-    return Conditions({}, {(1, 1): room_world}, runs=3, seed=0, threads=1)
+def conditions(room_world, tmp_path):
+    return Conditions(
+        {}, {(1, 1): room_world}, runs=3, seed=0, store=TrainingStore(tmp_path, 1, True, ignore)
+    )
 
 
 def test_outcomes_are_those_of_the_training(room_world, conditions):

@@ -1,0 +1,86 @@
+"""A full disk ends every command that writes with exit code 1 and a line that says what is full."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from cli_plans import QUICK, done, edited, room_file, run
+
+from raytrace import RadioMap
+from rssnav import TrainingResult
+
+resource = pytest.importorskip("resource")
+
+
+@contextmanager
+def no_file_above(n_bytes: int) -> Generator[None]:
+    """Let every write beyond a size fail, as on a full disk."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (n_bytes, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("room")
+    text = edited("points = [[3, 0], [3, 4]]", "points = [[3, 0], [3, 2.5]]")
+    found = {"plan": room_file(folder, text), "map": folder / "room.h5", "run": folder / "run.h5"}
+    done("map", found["plan"], "-o", found["map"])
+    done("train", found["plan"], "--map", found["map"], "--agent", "location", "--runs", 2,
+         "--episodes", 60, "-o", found["run"])  # fmt: skip
+    found["dxf"] = folder / "room.dxf"
+    done("plan", "export", found["plan"], "-o", found["dxf"])
+    return found
+
+
+COMMANDS = {
+    "map": ("map", "{plan}", *QUICK, "-o", "{out}/map.h5"),
+    "map picture": (
+        "map", "{plan}", "--force", "-o", "{out}/map.h5", "--picture", "{out}/map.png"
+    ),
+    "train": ("train", "{plan}", "--map", "{map}", "--agent", "location", "--runs", 2,
+              "--episodes", 60, "-o", "{out}/run.h5"),
+    "fly": ("fly", "{plan}", "{run}", "--map", "{map}", "-o", "{out}/flight.gif"),
+    "plan export dxf": ("plan", "export", "{plan}", "-o", "{out}/room.dxf"),
+    "plan export obj": ("plan", "export", "{plan}", "-o", "{out}/room.obj"),
+    "plan export yaml": ("plan", "export", "{plan}", "-o", "{out}/room.yaml"),
+    "plan export glb": ("plan", "export", "{plan}", "-o", "{out}/room.glb"),
+    "plan import": ("plan", "import", "{dxf}", "-o", "{out}/room.toml"),
+    "plan new": ("plan", "new", "-o", "{out}/new.toml"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_file_that_is_full_is_named(name, files, tmp_path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    arguments = [str(word).format(out=out, **files) for word in COMMANDS[name]]
+    with no_file_above(64):
+        result = run(*arguments)
+    assert result.exit_code == 1, result.output
+    (line,) = [text for text in result.stderr.splitlines() if text.startswith("rssnav: ")]
+    assert "File too large" in line
+    assert str(out) in line
+    assert [path for path in out.rglob("*") if path.is_file()] == []
+
+
+@pytest.mark.parametrize(("name", "load"), [("map", RadioMap.load), ("train", TrainingResult.load)])
+def test_what_was_computed_is_kept_elsewhere(name, load, files, tmp_path, monkeypatch) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(elsewhere))
+    (tmp_path / "file").touch()
+    out = tmp_path / "file"  # no folder, so nothing can be written in it
+    arguments = [str(word).format(out=out, **files) for word in COMMANDS[name]]
+    result = run(*arguments)
+    assert result.exit_code == 1
+    (kept,) = elsewhere.glob("rssnav-*/*.h5")
+    assert f"the result is kept in {kept}" in result.stderr
+    load(kept)
