@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,6 +40,11 @@ class TrainingStore:
     resume: bool
     notice: Notice
 
+    @staticmethod
+    def file_name(name: str) -> str:
+        """Name of the file of a training: its name without what not every system allows."""
+        return re.sub(r"[^\w.]+", "-", name) + ".h5"
+
     def train(
         self,
         name: str,
@@ -53,7 +59,7 @@ class TrainingStore:
         Parameters
         ----------
         name : str
-            Name of its file.
+            Says completely what is trained; the name of its file follows from it.
         world, agent, learning, schedule, progress
             As of :func:`rssnav.train`.
 
@@ -62,7 +68,7 @@ class TrainingStore:
         TrainingInterrupted
             On Ctrl-C, after the finished realisations are saved.
         """
-        path = self.folder / f"{name}.h5"
+        path = self.folder / self.file_name(name)
         earlier = self._earlier(path, world, agent, learning, schedule)
         if earlier is not None and earlier.complete:
             return earlier, False

@@ -8,7 +8,6 @@ add a study, describe it and list it in :mod:`rssnav.experiments.studies`.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,8 +86,7 @@ class Conditions:
             On Ctrl-C.
         """
         schedule = Schedule(self.runs, episodes, self.seed, until_converged, 1, (), max_total_steps)
-        file = re.sub(r"[^\w.]+", "-", name)
-        return self.store.train(file, world, agent, learning or QLearning(), schedule)[0]
+        return self.store.train(name, world, agent, learning or QLearning(), schedule)[0]
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,7 @@ from rssnav.experiments.paper.tables.path_lengths import table as path_lengths
 from rssnav.experiments.paper.trainings import TrainingPlan
 from rssnav.experiments.tables import Column, Table
 from rssnav.experiments.training_store import TrainingStore
+from rssnav.result_file import ResultFileError
 
 RUNS = 2
 
@@ -158,6 +159,24 @@ def test_the_report_can_be_made_again_from_the_folder_alone(run):
 
 def test_without_a_run_there_is_nothing_to_report_on(tmp_path):
     with pytest.raises(FileNotFoundError, match="rssnav experiments"):
+        report_again(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{",
+        "[]",
+        '{"run": 1}',
+        '{"run": {"seed": 0, "runs": 3, "quick": 1, "plans": ["flat", "flat"]}}',
+        '{"run": {"seed": 0, "runs": -3, "quick": true, "plans": ["flat", "flat"]}}',
+        '{"run": {"seed": 0, "runs": 3, "quick": true, "plans": ["flat", null]}}',
+        "[" * 100_000,
+    ],
+)
+def test_a_damaged_summary_is_no_run_to_report_on(tmp_path, text):
+    (tmp_path / "summary.json").write_text(text)
+    with pytest.raises(ResultFileError, match=r"summary\.json is damaged"):
         report_again(tmp_path)
 
 
