@@ -82,7 +82,7 @@ class Imported:
         lines += [
             f"# assumed: {a.key} = {a.value}: {a.why}" for a in self.assumed if a.key not in keys
         ]
-        return [" ".join(line.split()) for line in lines]
+        return [_comment(line) for line in lines]
 
     def _body(self) -> list[str]:
         """Lines of the plan, with the assumptions before the first wall as comments."""
@@ -90,7 +90,7 @@ class Imported:
         lines = self._lines()
         n_top = lines.index("[[walls]]")
         top = [
-            f"{line}  # assumed: {' '.join(whys[key].split())}"
+            f"{line}  # assumed: {_comment(whys[key])}"
             if (key := line.split(" = ")[0]) in whys
             else line
             for line in lines[:n_top]
@@ -99,3 +99,8 @@ class Imported:
 
     def _lines(self) -> list[str]:
         return dumps(self.plan).splitlines()
+
+
+def _comment(text: str) -> str:
+    """Return a text as TOML allows it in a comment: one line, without control characters."""
+    return "".join(c for c in " ".join(text.split()) if c.isprintable())

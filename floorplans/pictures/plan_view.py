@@ -196,7 +196,7 @@ def _set_up_axes(plan: FloorPlan, ax: Axes) -> None:
     ax.set_ylim(y_min - margin, y_max + margin + 0.04 * extent)
     ax.set_xticks(_ticks(x_min, x_max, extent))
     ax.set_yticks(_ticks(y_min, y_max, extent))
-    ax.set_title(plan.name, loc="left")
+    ax.set_title(plan.name, loc="left", parse_math=False)
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
     ax.spines[:].set_visible(False)

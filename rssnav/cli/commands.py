@@ -3,6 +3,8 @@
 The list of commands and shell completion need no other library, so they are fast.
 """
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -18,6 +20,8 @@ from rssnav.cli.failures import (
     is_anticipated,
     with_remedy,
 )
+from rssnav.cli.streams import tolerant_streams
+from rssnav.messages import printable
 
 
 class Entry(NamedTuple):
@@ -86,6 +90,17 @@ def _unloaded() -> None:
     """Placeholder of a command until `Commands` loads it."""
 
 
+@contextmanager
+def _printable_usage() -> Generator[None]:
+    """Escape control characters in messages on wrong usage."""
+    try:
+        yield
+    except Exception as error:
+        if isinstance(message := getattr(error, "message", None), str):
+            error.__dict__["message"] = printable(message)
+        raise
+
+
 class Commands(TyperGroup):
     """A group of commands, loaded when called; exits with 0, 1, 2, or 130 after Ctrl-C."""
 
@@ -96,6 +111,16 @@ class Commands(TyperGroup):
             import_module(f"rssnav.cli.{module}").add_to(part)
         self.commands[name] = get_group(part).commands[name]
 
+    def main(self, *args: Any, **kwargs: Any) -> Any:
+        """Run a command line, on terminals of any encoding and into pipes that close early."""
+        with tolerant_streams():
+            return super().main(*args, **kwargs)
+
+    def make_context(self, *args: Any, **kwargs: Any) -> Any:
+        """Read the options before a command's name."""
+        with _printable_usage():
+            return super().make_context(*args, **kwargs)
+
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Load the command that is called."""
         if args and args[0] in COMMANDS:
@@ -105,7 +130,8 @@ class Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command; turn anticipated errors into a message and an exit code."""
         try:
-            return super().invoke(ctx)
+            with _printable_usage():
+                return super().invoke(ctx)
         except KeyboardInterrupt as interrupt:
             complain(str(interrupt) or NOTHING_HALF)
             raise typer.Exit(INTERRUPTED) from interrupt

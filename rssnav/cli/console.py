@@ -23,6 +23,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rssnav.experiments.progress import StageProgress
+from rssnav.messages import printable
 
 LINE_EVERY_S = 2.0
 COMPILING = "compiling kernels (first use only)"
@@ -38,7 +39,7 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Non
     rows
         Cells, converted by `str`.
     """
-    cells = [[str(cell) for cell in row] for row in rows]
+    cells = [[printable(str(cell)) for cell in row] for row in rows]
     console = Console()
     if console.is_terminal:
         console.print(_rich_table(columns, cells))
@@ -68,12 +69,23 @@ def print_pairs(pairs: Iterable[tuple[str, object]]) -> None:
     pairs = list(pairs)
     width = max(len(name) for name, _ in pairs)
     for name, value in pairs:
-        print(f"{name:<{width}}  {value}")
+        say(f"{name:<{width}}  {value}")
 
 
 def print_json(value: Any) -> None:
-    """Print strict JSON, with non-finite numbers as null."""
-    print(json.dumps(_jsonable(value), indent=2, ensure_ascii=False, allow_nan=False))
+    """Print strict JSON, with non-finite numbers as null and escapes for what cannot be shown."""
+    text = json.dumps(_jsonable(value), indent=2, ensure_ascii=False, allow_nan=False)
+    if printable(text) != text or not _can_encode(text):
+        text = json.dumps(_jsonable(value), indent=2, allow_nan=False)
+    print(text)
+
+
+def _can_encode(text: str) -> bool:
+    try:
+        text.encode(sys.stdout.encoding or "utf-8")
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _jsonable(value: Any) -> Any:
@@ -88,9 +100,14 @@ def _jsonable(value: Any) -> Any:
     return value
 
 
+def say(line: str) -> None:
+    """Write a line to standard output, with escapes for characters that a terminal would obey."""
+    print(printable(line))
+
+
 def note(sentence: str) -> None:
     """Write a line to standard error."""
-    print(sentence, file=sys.stderr)
+    print(printable(sentence), file=sys.stderr)
 
 
 @contextmanager
@@ -121,7 +138,7 @@ def one_progress(stage: str, compiles: bool = False) -> Generator[Callable[[int,
 
 def _bars(console: Console) -> Progress:
     return Progress(
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TaskProgressColumn(),
         TimeElapsedColumn(),

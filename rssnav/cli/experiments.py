@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rssnav.cli.console import note, print_table, stage_progress
+from rssnav.cli.console import note, print_table, say, stage_progress
 from rssnav.cli.options import Style, Threads, examples
 from rssnav.kernel_cache import learning_cache, tracer_cache
 
@@ -144,7 +144,7 @@ def _run_study(
             notice=note,
         )
     for file in result.files:
-        print(file)
+        say(str(file))
 
 
 def remake_report(out: Out = RESULTS, style: Style = None, threads: Threads = None) -> None:
@@ -168,5 +168,5 @@ def _print(paper: Paper) -> None:
         [(finding.claim.key, finding.verdict) for finding in paper.findings],
     )
     count = Counter(str(finding.verdict) for finding in paper.findings)
-    print(", ".join(f"{n} {verdict}" for verdict, n in count.most_common()))
-    print(f"report: {paper.report}")
+    say(", ".join(f"{n} {verdict}" for verdict, n in count.most_common()))
+    say(f"report: {paper.report}")

@@ -2,7 +2,7 @@
 
 import sys
 
-from rssnav.messages import describe
+from rssnav.messages import describe, printable
 
 COULD_NOT = 1
 INTERRUPTED = 130
@@ -34,7 +34,7 @@ def is_anticipated(error: Exception) -> bool:
 
 def complain(message: str) -> None:
     """Write a line to standard error, prefixed with the program's name."""
-    print(f"rssnav: {message}", file=sys.stderr)
+    print(f"rssnav: {printable(message)}", file=sys.stderr)
 
 
 def with_remedy(error: Exception) -> str:

@@ -9,7 +9,7 @@ import floorplans
 from atomicfiles import atomic_write
 from floorplans import FloorPlan
 from rssnav.cli import plan_check, plan_export, plan_import, plan_new
-from rssnav.cli.console import print_json, print_table
+from rssnav.cli.console import print_json, print_table, say
 from rssnav.cli.options import PICTURE_SUFFIXES, Json, Plan, Style, check_suffix, examples
 from rssnav.cli.plan_sketch import sketch
 from rssnav.cli.plan_summary import (
@@ -103,11 +103,11 @@ def show(
         )
     loaded = floorplans.load(plan)
     if output is None:
-        print(sketch(loaded))
+        say(sketch(loaded))
         print_summary(loaded)
         return
     _draw(loaded, output, view, style)
-    print(f"wrote {output}")
+    say(f"wrote {output}")
 
 
 def _draw(

@@ -21,9 +21,10 @@ from floorplans.repair.walls import Change
 from floorplans.unchecked import PlanFile, UncheckedPlan
 from raytrace import SceneError
 from rssnav import WorldError
-from rssnav.cli.console import note, print_json, print_table
+from rssnav.cli.console import note, print_json, print_table, say
 from rssnav.cli.options import Json, Plan, check_suffix, examples
 from rssnav.cli.plan_summary import print_summary, summary_of
+from rssnav.messages import printable
 from rssnav.reachability import Reach, reaches, unreached
 from rssnav.scenes import scene_of
 
@@ -147,7 +148,7 @@ def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool)
             _print_findings(findings)
     else:
         _print_flights(FloorPlan.of(file.plan), flights, findings)
-        print(f"\n{plan} is valid{_but(len(findings))}")
+        say(f"\n{plan} is valid{_but(len(findings))}")
     if errors:
         _fail(file, plan)
 
@@ -176,7 +177,7 @@ def _row(reach: Reach) -> dict[str, Any]:
 
 def _print_flights(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence[Finding]) -> None:
     print_summary(plan)
-    print("\nshortest flight from the start to the source")
+    say("\nshortest flight from the start to the source")
     print_table(
         (">speed", ">steps", ">length", ""),
         [
@@ -196,14 +197,16 @@ def _print_findings(findings: Sequence[Finding]) -> None:
     console = Console()
     if not console.is_terminal:
         for f in findings:
-            print(f"{f.severity}  {_where(f)}  {_what(f)}")
+            say(f"{f.severity}  {_where(f)}  {_what(f)}")
         return
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for column in ("", "where", "what"):
         table.add_column(column, no_wrap=column != "what")
     for f in findings:
         colour = "red" if f.severity == "error" else "yellow"
-        table.add_row(Text(f.severity, style=colour), Text(_where(f)), Text(f"{f.kind}: {f.text}"))
+        table.add_row(
+            Text(f.severity, style=colour), Text(_where(f)), Text(printable(f"{f.kind}: {f.text}"))
+        )
     console.print(table)
 
 

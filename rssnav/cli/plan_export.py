@@ -8,6 +8,7 @@ import typer
 import floorplans
 from floorplans.exporters import FORMATS, ExportOptions
 from floorplans.exporters import export as export_plan
+from rssnav.cli.console import say
 from rssnav.cli.options import Plan, check_suffix, examples
 
 _SUFFIXES = tuple(suffix for kind in FORMATS for suffix in kind.suffixes)
@@ -58,4 +59,4 @@ def export(
     options = ExportOptions(resolution, slice_height, frequency * 1e9)
     files = export_plan(floorplans.load(plan), output, options=options)
     for file in files:
-        print(f"wrote {file}: {file.stat().st_size} bytes")
+        say(f"wrote {file}: {file.stat().st_size} bytes")

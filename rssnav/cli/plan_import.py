@@ -10,7 +10,7 @@ import typer
 from atomicfiles import atomic_write
 from floorplans.importers import Imported, ImportOptions, import_plan
 from floorplans.repair.walls import Change
-from rssnav.cli.console import print_json, print_table
+from rssnav.cli.console import print_json, print_table, say
 from rssnav.cli.options import Json, check_suffix, examples
 from rssnav.cli.plan_summary import print_summary, summary_of
 
@@ -202,15 +202,15 @@ def _report(imported: Imported, output: Path, as_json: bool) -> None:
         print()
     _print_changes(imported.changes)
     for sentence in imported.notes:
-        print(sentence)
+        say(sentence)
     print_summary(imported.plan)
-    print(f"\nwrote {output}; see it with: rssnav plan show {output}")
+    say(f"\nwrote {output}; see it with: rssnav plan show {output}")
 
 
 def _print_layer_option(imported: Imported) -> None:
     unknown = [use.name for use in imported.layers if use.is_unknown]
     if unknown:
-        print(f"layers of unknown names are walls with, for example, --layer '{unknown[0]}=wall'")
+        say(f"layers of unknown names are walls with, for example, --layer '{unknown[0]}=wall'")
 
 
 def _print_changes(changes: tuple[Change, ...]) -> None:
@@ -218,8 +218,8 @@ def _print_changes(changes: tuple[Change, ...]) -> None:
     if not changes:
         return
     counts = Counter(change.kind for change in changes)
-    print("repaired: " + ", ".join(f"{n} {kind}" for kind, n in counts.items()))
+    say("repaired: " + ", ".join(f"{n} {kind}" for kind, n in counts.items()))
     for change in changes:
         if change.kind in LISTED_CHANGES:
-            print(f"  {change}")
+            say(f"  {change}")
     print()

@@ -6,7 +6,9 @@ from typing import Annotated
 
 import typer
 
+import floorplans
 from atomicfiles import atomic_write
+from rssnav.cli.console import say
 from rssnav.cli.options import check_suffix, examples
 
 _SIZE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX×]\s*(\d+(?:\.\d+)?)\s*")
@@ -43,8 +45,9 @@ def new(
         text = starter_plan(output.stem, float(match[1]), float(match[2]), height)
     except ValueError as error:
         raise typer.BadParameter(f"{error}.", param_hint="--size, --height") from error
+    floorplans.loads(text, origin=str(output))
     if output.exists() and not force:
         raise FileExistsError(17, "the file is there already; --force replaces it", str(output))
     with atomic_write(output) as beside:
         beside.write_text(text, encoding="utf-8", newline="\n")
-    print(f"wrote {output}; see it with: rssnav plan show {output}")
+    say(f"wrote {output}; see it with: rssnav plan show {output}")

@@ -10,7 +10,7 @@ import typer
 import floorplans
 from floorplans import FloorPlan
 from raytrace import RadioMap, TraceConfig
-from rssnav.cli.console import note, print_json, print_pairs, stage_progress
+from rssnav.cli.console import note, print_json, print_pairs, say, stage_progress
 from rssnav.cli.options import (
     PICTURE_SUFFIXES,
     CellSize,
@@ -140,8 +140,8 @@ def map_scenarios(
             if style is not None or _is_older(picture, file):
                 _draw(plan, radio_map, picture, style)
     for name in PLANS:
-        print(out / f"{name}.h5")
-        print(out / f"{name}.png")
+        say(str(out / f"{name}.h5"))
+        say(str(out / f"{name}.png"))
 
 
 def _is_older(picture: Path, map_file: Path) -> bool:

@@ -27,7 +27,7 @@ from rssnav import (
     shortest_path,
     train,
 )
-from rssnav.cli.console import note, one_progress, print_json, print_pairs
+from rssnav.cli.console import note, one_progress, print_json, print_pairs, say
 from rssnav.cli.options import Json, Plan, Threads, examples
 from rssnav.discrete_states import StateRule
 from rssnav.keeping import lenient, save_or_rescue
@@ -377,7 +377,7 @@ def _print(summary: dict[str, Any], output: Path | None) -> None:
     ]
     print_pairs(pairs)
     if output is not None:
-        print(f"kept in {output}")
+        say(f"kept in {output}")
 
 
 def _text(spread: dict[str, float] | None, digits: int = 0) -> str:

@@ -111,7 +111,7 @@ def paths_figure(plan: FloorPlan, paths: Paths, power_dbm: float, title: str) ->
     ax = figure.add_subplot()
     drawn = draw_paths(plan, paths, power_dbm, ax)
     figure.colorbar(drawn, ax=ax, label=POWER_LABEL, pad=0.02, aspect=25)
-    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize="medium")
+    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize="medium", parse_math=False)
     handles, _ = ax.get_legend_handles_labels()
     figure.legend(handles=handles, loc="outside lower center", ncols=4)
     return figure

@@ -107,7 +107,7 @@ def map_figure(plan: FloorPlan, radio_map: RadioMap, *, width_in: float | None =
     ax = figure.add_subplot()
     image = draw_radio_map(plan, radio_map, ax)
     figure.colorbar(image, ax=ax, label="RSS [dBm]", pad=0.02, aspect=25)
-    figure.suptitle("\n".join(title), x=0.01, ha="left", fontsize="medium")
+    figure.suptitle("\n".join(title), x=0.01, ha="left", fontsize="medium", parse_math=False)
     marks, _ = ax.get_legend_handles_labels()
     figure.legend(handles=[*marks, *keys], loc="outside lower center", ncols=columns)
     return figure
