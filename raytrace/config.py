@@ -11,19 +11,19 @@ class TraceConfig:
     Attributes
     ----------
     max_reflections
-        Most reflections on a path: walls, floor and ceiling together, before and after a
-        diffraction together.
+        Maximum number of reflections on a path: walls, floor and ceiling together, before and
+        after a diffraction together.
     max_diffractions
         0 or 1.
     max_transmissions
-        Most walls that a path goes through, each with its transmission coefficient; filled doors
-        and windows are walls.
+        Maximum number of walls that a path passes through, each with its transmission
+        coefficient; filled doors and windows are walls.
     min_power_dbm
         Paths below it are left out; all are kept by default. The map holds a bound on what was
         left out (`RadioMap.left_out_db`).
     max_paths
-        Most paths of a whole map: `min_power_dbm` is raised in steps of 1 dB until it is met. No
-        limit by default.
+        Maximum number of paths of a whole map: `min_power_dbm` is raised in steps of 1 dB until it
+        is met. No limit by default.
     """
 
     max_reflections: int = 6

@@ -34,7 +34,7 @@ class Scene:
         What the floor covers (shapely, plan view) [m].
     slabs
         What walls, floor and ceiling are made of.
-    floor_material, ceiling_material
+    floor_slab, ceiling_slab
         Index into `slabs`.
     cells
         The plan view cut into convex cells.
@@ -47,8 +47,8 @@ class Scene:
     height_m: float
     footprint: BaseGeometry
     slabs: tuple[Slab, ...]
-    floor_material: int
-    ceiling_material: int
+    floor_slab: int
+    ceiling_slab: int
     cells: CellComplex
     vertical_edges: tuple[VerticalEdge, ...]
     horizontal_edges: tuple[HorizontalEdge, ...]

@@ -5,7 +5,7 @@ from raytrace import CostEstimate, Grid, Scene, TraceConfig, Transmitter, estima
 LONG_S = 60.0
 """A map that takes longer is announced [s]."""
 
-MOST_QUICK_WORK = 2e6
+MAX_SILENT_WORK = 2e6
 """Maps of less `work` are not estimated: the largest of them take some seconds."""
 
 
@@ -30,7 +30,7 @@ def announcement(
     SceneError
         Where the transmitter is not inside the building.
     """
-    if work(scene, grid, config) < MOST_QUICK_WORK:
+    if work(scene, grid, config) < MAX_SILENT_WORK:
         return None
     cost = estimate_cost(scene, transmitter, grid, config, threads=threads)
     return sentence(cost, grid) if cost.seconds > LONG_S else None

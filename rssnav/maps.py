@@ -21,9 +21,9 @@ from raytrace.results.map_file import is_radio_map
 from raytrace.trace import TRACER_VERSION
 from rssnav.cost_notice import announcement
 from rssnav.keeping import save_or_rescue
+from rssnav.progress import Progress
 from rssnav.scenes import PlanScene, edition_of, scene_of
 
-Progress = Callable[[int, int], None]
 Notice = Callable[[str], None]
 
 CELL_SIZE_M = 1.0
@@ -61,12 +61,12 @@ class MapRequest:
         found = radio_map.provenance
         made_with = {"material_edition": self.edition, "tracer_version": TRACER_VERSION}
         for what, same in (
-            ("for another plan", radio_map.plan_sha256 == self.plan.sha256),
-            ("with another trace configuration", radio_map.config == self.config),
-            ("for another transmitter", radio_map.transmitter == self.transmitter),
-            ("on another grid", radio_map.grid.same_as(self.grid)),
+            ("for a different plan", radio_map.plan_sha256 == self.plan.sha256),
+            ("with a different trace configuration", radio_map.config == self.config),
+            ("for a different transmitter", radio_map.transmitter == self.transmitter),
+            ("on a different grid", radio_map.grid.same_as(self.grid)),
             *(
-                (f"with another {key.replace('_', ' ')}", found.get(key) == value)
+                (f"with a different {key.replace('_', ' ')}", found.get(key) == value)
                 for key, value in made_with.items()
             ),
         ):
@@ -200,7 +200,7 @@ def require_map_for(plan: FloorPlan, radio_map: RadioMap, path: str | Path | Non
         return
     where = f"{path}: " if path is not None else ""
     raise MapFileError(
-        f"{where}the map was made for another plan: plan_sha256 = "
+        f"{where}the map was made for a different plan: plan_sha256 = "
         f"{radio_map.plan_sha256[:12] or 'none'}, but plan {plan.name!r} has {plan.sha256[:12]}; "
         "compute it again, or give the plan it was made for",
         None if path is None else Path(path),
@@ -218,12 +218,12 @@ def _current_map(request: MapRequest, path: Path, notice: Notice | None) -> Radi
     except MapFileError as error:
         if not is_radio_map(path):
             raise MapFileError(
-                f"{path}: there is a file that is not a radio map, and it is left alone; give "
-                "another path, or force=True to replace it",
+                f"{path}: exists but is not a radio map; not overwritten: give a different "
+                "path, or force=True to replace it",
                 path,
                 remedy="replace_file",
             ) from error
-        report(f"{path} is damaged or of another version; computing it again")
+        report(f"{path} is damaged or of a different version; computing it again")
         return None
     difference = request.difference(radio_map)
     if difference is None:

@@ -45,7 +45,7 @@ class Reach:
     n_cells: int
 
 
-def reaches(plan: FloorPlan, speeds: tuple[int, ...] = SPEEDS) -> tuple[Reach, ...]:
+def reach_by_speed(plan: FloorPlan, speeds: tuple[int, ...] = SPEEDS) -> tuple[Reach, ...]:
     """Find what a flight can reach, at each speed.
 
     Raises

@@ -150,7 +150,7 @@ class TrainingResult:
         ):
             if mine != other:
                 raise ValueError(
-                    f"the earlier result was trained with another {name}: train from the "
+                    f"the earlier result was trained with a different {name}: train from the "
                     "beginning, or with the same settings"
                 )
 

@@ -88,7 +88,7 @@ class ParticleFilter:
         Range of the path-loss exponent n.
     sigma_db : float
         Standard deviation of readings about the model: shadowing, multipath and fluctuation [dB].
-    fresh_share : float
+    fresh_fraction : float
         Fraction of new hypotheses at each resampling.
     steps_to_draw : int
         Steps flown towards a drawn hypothesis before another is drawn.
@@ -98,7 +98,7 @@ class ParticleFilter:
     power_dbm: tuple[float, float] = (-20.0, -10.0)
     exponent: tuple[float, float] = (1.5, 5.0)
     sigma_db: float = 8.0
-    fresh_share: float = 0.1
+    fresh_fraction: float = 0.1
     steps_to_draw: int = 40
 
     def __post_init__(self) -> None:
@@ -107,7 +107,7 @@ class ParticleFilter:
             ("power_dbm", self.power_dbm[0] < self.power_dbm[1]),
             ("exponent", 0.0 < self.exponent[0] < self.exponent[1]),
             ("sigma_db", 0.0 < self.sigma_db < math.inf),
-            ("fresh_share", 0.0 <= self.fresh_share < 1.0),
+            ("fresh_fraction", 0.0 <= self.fresh_fraction < 1.0),
             ("steps_to_draw", self.steps_to_draw >= 1),
         ):
             if not holds:
@@ -124,7 +124,7 @@ _RIGHT = {
     "power_dbm": "must be a lower and a higher level [dBm]",
     "exponent": "must be a lower and a higher exponent, both positive",
     "sigma_db": "must be a positive, finite number of dB",
-    "fresh_share": "must lie in [0, 1)",
+    "fresh_fraction": "must lie in [0, 1)",
     "steps_to_draw": "must be at least 1",
 }
 _JITTER = np.array([0.5, 0.5, 0.3, 0.05])  # x, y [m], p [dB], n
@@ -271,7 +271,7 @@ def _model(searcher: ParticleFilter, world: GridWorld) -> Model:
         high=np.array([*high_xy, *(high for _, high in ranges)]),
         jitter=_JITTER,
         sigma_db=searcher.sigma_db,
-        fresh_share=searcher.fresh_share,
+        fresh_fraction=searcher.fresh_fraction,
         found_m=2.0,
         steps_to_draw=searcher.steps_to_draw,
     )

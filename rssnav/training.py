@@ -22,11 +22,11 @@ from rssnav.kernels import common
 from rssnav.learning_parameters import QLearning
 from rssnav.learning_rules import LearningProblem
 from rssnav.optimal_flights import Flight, greedy_path
+from rssnav.progress import Progress
 from rssnav.results import TrainingResult, padded
 from rssnav.schedule import NO_STEP_LIMIT, Schedule
 from rssnav.world import GridWorld
 
-Progress = Callable[[int, int], None]
 Checkpoint = Callable[[TrainingResult], None]
 
 _CHUNK_EPISODES = 64  # between two checks for an interrupt

@@ -259,8 +259,8 @@ def _check_map(plan: FloorPlan, radio_map: RadioMap) -> None:
     # for a map without a plan's hash the caller is trusted
     if radio_map.plan_sha256 not in ("", plan.sha256):
         raise WorldError(
-            f"the radio map was made for another plan than {plan.name!r} (sha256 "
-            f"{radio_map.plan_sha256[:12]}, the plan has {plan.sha256[:12]}): make the map again"
+            f"the radio map was made for a different plan than {plan.name!r} (sha256 "
+            f"{radio_map.plan_sha256[:12]}, the plan has {plan.sha256[:12]}): compute the map again"
         )
     rss_dbm = radio_map.rss_dbm
     undefined = int(np.count_nonzero(np.isnan(rss_dbm)))

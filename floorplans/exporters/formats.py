@@ -121,9 +121,7 @@ def format_of(path: Path, name: str | None = None) -> Format:
     if name is not None:
         raise PlanError(unknown_name("format", name, tuple(kind.name for kind in FORMATS)))
     known = ", ".join(suffix for kind in FORMATS for suffix in kind.suffixes)
-    raise PlanError(
-        f"no format has the suffix {path.suffix!r}; known are {known}", origin=str(path)
-    )
+    raise PlanError(f"no format has the suffix {path.suffix!r}; known: {known}", origin=str(path))
 
 
 def _write_all(files: Mapping[Path, bytes]) -> tuple[Path, ...]:

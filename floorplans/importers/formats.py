@@ -139,4 +139,4 @@ def _format_of(path: Path) -> Format:
             return kind
     known = ", ".join(suffix for kind in FORMATS for suffix in kind.suffixes)
     found = f"the ending {path.suffix}" if path.suffix else "no ending"
-    raise PlanError(f"a file with {found} cannot be imported; known are {known}", origin=str(path))
+    raise PlanError(f"a file with {found} cannot be imported; known: {known}", origin=str(path))

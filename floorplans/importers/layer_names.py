@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Literal, TypeVar, get_args
@@ -101,9 +101,9 @@ def meaning_of(name: str, layers: Mapping[str, str] | None = None) -> Meaning:
     >>> meaning_of("Türen").kind, meaning_of("cotes").kind
     ('door', None)
     """
-    for pattern, meaning in (layers or {}).items():
-        if fnmatchcase(name.casefold(), pattern.casefold()):
-            return parse_meaning(meaning, pattern)
+    chosen = meaning_in(layers or {}, name, KINDS)
+    if chosen is not None:
+        return Meaning(*chosen)
     words = _words(name)
     material = _first(words, _MATERIAL_WORDS)
     kind: Kind | None = _first(words, _WORDS)
@@ -125,17 +125,34 @@ def material_named(name: str) -> str | None:
     return _first(_words(name), _MATERIAL_WORDS)
 
 
-def parse_meaning(text: str, name: str) -> Meaning:
-    """Parse KIND or KIND:MATERIAL as a user writes it for the layer `name`."""
+def meaning_in(
+    layers: Mapping[str, str], name: str, kinds: Sequence[T]
+) -> tuple[T, str | None] | None:
+    """Find kind and material of a name in the user's mapping; None if no pattern matches.
+
+    Raises
+    ------
+    PlanError
+        When the mapping names an unknown kind or material for it.
+    """
+    for pattern, text in layers.items():
+        if fnmatchcase(name.casefold(), pattern.casefold()):
+            return _parse_meaning(text, pattern, kinds)
+    return None
+
+
+def _parse_meaning(text: str, pattern: str, kinds: Sequence[T]) -> tuple[T, str | None]:
+    """Parse KIND or KIND:MATERIAL."""
     kind_text, _, material = text.partition(":")
-    kinds: dict[str, Kind] = {kind: kind for kind in KINDS}
-    kind = kinds.get(kind_text.strip())
+    by_name = {str(kind): kind for kind in kinds}
+    kind = by_name.get(kind_text.strip())
     if kind is None:
-        raise PlanError(unknown_name("kind of layer", kind_text, KINDS), ("layers", name), text)
+        problem = unknown_name("kind of layer", kind_text, tuple(by_name))
+        raise PlanError(problem, ("layers", pattern), text)
     material = material.strip() or None
     if material is not None and material not in MATERIALS:
-        raise PlanError(unknown_name("material", material, MATERIALS), ("layers", name), text)
-    return Meaning(kind, material)
+        raise PlanError(unknown_name("material", material, MATERIALS), ("layers", pattern), text)
+    return kind, material
 
 
 def _words(name: str) -> list[str]:

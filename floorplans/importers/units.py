@@ -35,7 +35,7 @@ def unit_length(unit: str) -> float:
 
 
 def check_size(size: tuple[float, float], unit: str, stated_by: str) -> None:
-    """Reject a unit in which the drawing is no building.
+    """Reject a unit in which the drawing is too large or too small for a building.
 
     Parameters
     ----------
@@ -50,8 +50,8 @@ def check_size(size: tuple[float, float], unit: str, stated_by: str) -> None:
         return
     candidates = _plausible_units(size)
     raise PlanError(
-        f"in {unit}, as {stated_by}, the walls cover {_size_text(size, unit)}, which is no "
-        f"building; {_proposal(size, candidates)}",
+        f"in {unit}, as {stated_by}, the walls cover {_size_text(size, unit)}, too large or too "
+        f"small for a building; {_proposal(size, candidates)}",
         ("unit",),
         unit,
         remedy="unit",

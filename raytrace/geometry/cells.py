@@ -209,9 +209,9 @@ def _plan_view(
         behind_first=_offsets(behind),
         behind=np.array([f for edges in behind for f in edges], dtype=np.int64),
         cell_of=cell,
-        profile_bins=_offsets([p.tops for p in profiles]),
-        bin_top=np.array([t for p in profiles for t in p.tops]),
-        bin_material=np.array([m for p in profiles for m in p.materials], dtype=np.int64),
+        profile_intervals=_offsets([p.tops for p in profiles]),
+        interval_top=np.array([t for p in profiles for t in p.tops]),
+        interval_slab=np.array([m for p in profiles for m in p.materials], dtype=np.int64),
     )
 
 

@@ -37,7 +37,7 @@ class VerticalEdge:
         Direction of the o-face [rad]; the free space lies counter-clockwise of it.
     wedge_n
         Free angle over pi.
-    o_material, n_material
+    o_slab, n_slab
         Slab of the o-face and of the n-face.
     z_low, z_high
         Heights of its ends [m].
@@ -50,8 +50,8 @@ class VerticalEdge:
     y: float
     o_face_azimuth: float
     wedge_n: float
-    o_material: int
-    n_material: int
+    o_slab: int
+    n_slab: int
     z_low: float
     z_high: float
     cells: Ints
@@ -82,8 +82,8 @@ class HorizontalEdge:
 class _Wedge(NamedTuple):
     o_face: float
     angle: float
-    o_material: int
-    n_material: int
+    o_slab: int
+    n_slab: int
 
 
 def find_vertical_edges(cells: CellComplex, height_m: float) -> tuple[VerticalEdge, ...]:
@@ -133,17 +133,17 @@ def _edges_at(
         if inside:
             yield VerticalEdge(
                 vertex, float(x), float(y), wedge.o_face, wedge.angle / np.pi,
-                wedge.o_material, wedge.n_material, z_low, z_high, np.array(inside, np.int64),
+                wedge.o_slab, wedge.n_slab, z_low, z_high, np.array(inside, np.int64),
             )  # fmt: skip
 
 
 def _wedges(walls: list[tuple[float, Profile]], z: float) -> Iterator[_Wedge]:
     """Free sectors of more than half a turn between the walls that stand at height z."""
     solid = sorted((azimuth, m) for azimuth, p in walls if (m := p.at(z)) != OPEN)
-    for (start, o_material), (end, n_material) in zip(solid, solid[1:] + solid[:1], strict=True):
+    for (start, o_slab), (end, n_slab) in zip(solid, solid[1:] + solid[:1], strict=True):
         angle = end - start if end > start else end - start + TURN
         if angle > np.pi + STRAIGHT_RAD:
-            yield _Wedge(start, angle, o_material, n_material)
+            yield _Wedge(start, angle, o_slab, n_slab)
 
 
 def find_horizontal_edges(cells: CellComplex) -> tuple[HorizontalEdge, ...]:
@@ -151,9 +151,10 @@ def find_horizontal_edges(cells: CellComplex) -> tuple[HorizontalEdge, ...]:
     view = cells.view
     edges: list[HorizontalEdge] = []
     for e in np.flatnonzero((view.kind == PARTIAL) & (view.twin > np.arange(len(view.twin)))):
-        bins = slice(view.profile_bins[view.profile[e]], view.profile_bins[view.profile[e] + 1])
-        materials = view.bin_material[bins].tolist()
-        for z, (below, above) in zip(view.bin_top[bins], pairwise(materials), strict=False):
+        profile = view.profile[e]
+        part = slice(view.profile_intervals[profile], view.profile_intervals[profile + 1])
+        slabs = view.interval_slab[part].tolist()
+        for z, (below, above) in zip(view.interval_top[part], pairwise(slabs), strict=False):
             if (below == OPEN) != (above == OPEN):
                 sides = (int(e), int(view.twin[e]))
                 edges.append(HorizontalEdge(sides, float(z), above != OPEN, max(below, above)))

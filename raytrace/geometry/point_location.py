@@ -6,7 +6,7 @@ from raytrace.arrays import Bools, Floats, Ints
 from raytrace.kernels.beam_hits import Targets, edge_side, most_edges, weight_within
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import WIDTH
-from raytrace.kernels.plan_view import GRAZING_M, PlanView, material_at
+from raytrace.kernels.plan_view import GRAZING_M, PlanView, slab_at
 from raytrace.kernels.rows import enlarged, resized
 
 
@@ -63,7 +63,7 @@ def wall_around(view: PlanView, cells: Ints, place: tuple[float, float, float]) 
         for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
             inside, _, _ = edge_side(view, e, x, y)
             on_wall = view.profile[e] >= 0 and inside < GRAZING_M
-            if on_wall and material_at(view, view.profile[e], z) >= 0:
+            if on_wall and slab_at(view, view.profile[e], z) >= 0:
                 return e
     return -1
 
@@ -101,14 +101,14 @@ def bounces_needed(
     """
     if z_high - z_low < 2e-6:
         z_low, z_high = z_low - 1e-6, z_high + 1e-6
-    open_between = np.zeros(len(view.profile_bins) - 1, bool)
+    open_between = np.zeros(len(view.profile_intervals) - 1, bool)
     wall_between = np.zeros_like(open_between)
     for p in range(len(open_between)):
         bottom = 0.0
-        for k in range(view.profile_bins[p], view.profile_bins[p + 1]):
-            overlaps = min(view.bin_top[k], z_high) - max(bottom, z_low) > 1e-9
-            (open_between if view.bin_material[k] < 0 else wall_between)[p] |= overlaps
-            bottom = view.bin_top[k]
+        for k in range(view.profile_intervals[p], view.profile_intervals[p + 1]):
+            overlaps = min(view.interval_top[k], z_high) - max(bottom, z_low) > 1e-9
+            (open_between if view.interval_slab[k] < 0 else wall_between)[p] |= overlaps
+            bottom = view.interval_top[k]
     needed = np.zeros((len(view.profile), 2), np.int64)
     on_wall = view.profile >= 0
     if not through_walls:

@@ -73,8 +73,8 @@ def window_side(beam: Floats, x: float, y: float, side: int) -> tuple[float, flo
     """Distance [m] of a point inside a beam's right (0) or left (1) border; the inward normal."""
     px, py = beam[IMAGE_X], beam[IMAGE_Y]
     dx, dy = beam[RIGHT_X + 2 * side] - px, beam[RIGHT_Y + 2 * side] - py
-    per_length = (1.0 - 2.0 * side) / math.sqrt(dx * dx + dy * dy)
-    nx, ny = -dy * per_length, dx * per_length
+    inv_length = (1.0 - 2.0 * side) / math.sqrt(dx * dx + dy * dy)
+    nx, ny = -dy * inv_length, dx * inv_length
     return nx * (x - px) + ny * (y - py), nx, ny
 
 
@@ -82,8 +82,8 @@ def window_side(beam: Floats, x: float, y: float, side: int) -> tuple[float, flo
 def edge_side(view: PlanView, e: int, x: float, y: float) -> tuple[float, float, float]:
     """Distance [m] of a point inside an edge of a cell; the inward normal."""
     dx, dy = view.ends[e, 2] - view.ends[e, 0], view.ends[e, 3] - view.ends[e, 1]
-    per_length = 1.0 / math.sqrt(dx * dx + dy * dy)
-    nx, ny = -dy * per_length, dx * per_length
+    inv_length = 1.0 / math.sqrt(dx * dx + dy * dy)
+    nx, ny = -dy * inv_length, dx * inv_length
     return nx * (x - view.ends[e, 0]) + ny * (y - view.ends[e, 1]), nx, ny
 
 

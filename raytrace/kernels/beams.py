@@ -55,8 +55,8 @@ def grow_tree(
     root_cells
         The cells it lies in.
     limits
-        Most reflections, those required at floor and ceiling included, and most full walls gone
-        through.
+        Maximum numbers of reflections, those required at floor and ceiling included, and of
+        transmissions through full walls.
     """
     return Tree(*grow_tree_arrays(view, bounces, root, root_cells, limits))
 

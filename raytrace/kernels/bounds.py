@@ -23,13 +23,18 @@ from raytrace.kernels.unfolding import NORMAL, REFLECT_WALL, SURFACE, TYPE, Leg
 @jit(inline=True)
 def free_space(tables: FieldTables, length: Lanes) -> Lanes:
     """Bound on the received fraction of the power over distances [m]."""
-    size = (tables.wavelength / (4.0 * math.pi)) / length
-    return size * size * tables.peak_gain
+    spreading = (tables.wavelength / (4.0 * math.pi)) / length
+    return spreading * spreading * tables.peak_gain
 
 
 @jit(inner=True, fast=True)
 def leg_bound(
-    geometry: TraceGeometry, tables: FieldTables, leg: Leg, n: int, length: Lanes, order: int
+    geometry: TraceGeometry,
+    tables: FieldTables,
+    leg: Leg,
+    n: int,
+    length: Lanes,
+    wall_reflections: int,
 ) -> Lanes:
     """Bound on the fraction of the power that the walls on legs reflect.
 
@@ -39,10 +44,10 @@ def leg_bound(
         The geometry of the trace, and the materials.
     leg, n, length
         The legs, their interactions, their horizontal lengths [m].
-    order
-        Their reflections at walls; the remaining ones at floor and ceiling bound their slopes.
+    wall_reflections
+        Their number; the remaining reflections at floor and ceiling bound the slopes.
     """
-    rise = (geometry.max_reflections - order + 1) * geometry.building.height
+    rise = (geometry.max_reflections - wall_reflections + 1) * geometry.building.height
     cosine = length / sqrt(length * length + rise * rise)
     rows, bound = tables.slab_rows, lanes_of(1.0)
     for k in range(n):
@@ -61,9 +66,9 @@ def wedge_bound(
     tables: FieldTables,
     is_sheet: bool,
     cosines: tuple[Lanes, Lanes],
-    spread: Lanes,
+    sqrt_2kl: Lanes,
     total: Lanes,
-    order: int,
+    wall_reflections: int,
 ) -> Lanes:
     """Bounds on diffracted powers, without the reflections at walls.
 
@@ -76,15 +81,15 @@ def wedge_bound(
         The geometry of the trace, the antennas, and whether the wedge is a half plane.
     cosines
         Of half the angles to the two shadow boundaries.
-    spread, total, order
+    sqrt_2kl, total, wall_reflections
         See `vertical_edges.Pair`, and the number of reflections at walls.
     """
     if not is_sheet:
         return free_space(tables, total) * 4.0
-    rise = (geometry.max_reflections - order + 1) * geometry.building.height
+    rise = (geometry.max_reflections - wall_reflections + 1) * geometry.building.height
     cosine = total / sqrt(total * total + rise * rise)
     amplitude = lanes_of(0.0)
     for half in cosines:
-        s = (2.0 * math.sqrt(math.pi)) * spread * sqrt(cosine) * absolute(half)
+        s = (2.0 * math.sqrt(math.pi)) * sqrt_2kl * sqrt(cosine) * absolute(half)
         amplitude = amplitude + where(s < 2.0, lanes_of(0.5), 1.0 / s)
     return amplitude * amplitude * free_space(tables, total)

@@ -60,8 +60,8 @@ class TraceGeometry(NamedTuple):
         The receivers.
     image_bounces
         (2 max_reflections + 1,) number of reflections of each image.
-    max_reflections, max_walls
-        Most reflections on a path, and most walls that it goes through.
+    max_reflections, max_transmissions
+        Maximum numbers of reflections and transmissions on a path.
     """
 
     building: Building
@@ -70,7 +70,7 @@ class TraceGeometry(NamedTuple):
     receivers: Receivers
     image_bounces: Ints
     max_reflections: int
-    max_walls: int
+    max_transmissions: int
 
 
 def image_heights(z: float, height: float, max_bounces: int) -> Floats:

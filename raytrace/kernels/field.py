@@ -25,7 +25,7 @@ from raytrace.kernels.lanes import (
     where,
     where_complex,
 )
-from raytrace.kernels.plan_view import in_building, materials_at
+from raytrace.kernels.plan_view import in_building, slabs_at
 from raytrace.kernels.unfolding import (
     DISTANCE,
     NORMAL,
@@ -88,7 +88,7 @@ STOREY_TOLERANCE = 1e-9
 
 
 @jit(inline=True, fast=True)
-def bounced(ray: Ray, storeys: Lanes, wave: Wave) -> Wave:
+def apply_bounces(ray: Ray, storeys: Lanes, wave: Wave) -> Wave:
     """Apply the floor and ceiling reflections up to unfolded heights in storeys."""
     if ray.bounces == 0:
         return wave
@@ -125,11 +125,11 @@ def transmit(
     z = z_root + ray.slope * load(leg.interactions[k, DISTANCE])
     if leg.types[k, TYPE] == PASS_PARTIAL:
         beside = in_building(z + offset, building.height)
-        slab = materials_at(building.plan, leg.types[k, SURFACE], beside)
+        slab = slabs_at(building.plan, leg.types[k, SURFACE], beside)
     solid = slab >= 0.0
     if not any_of(solid):
         return wave
-    wave = bounced(ray, z / building.height, wave)
+    wave = apply_bounces(ray, z / building.height, wave)
     normal = load(leg.interactions[k, NORMAL])
     cosine = absolute(normal) * ray.cos_elevation
     tm, mix = slab_lookup(tables.transmission, tables.slab_rows, maximum(slab, 0.0), cosine)
@@ -168,7 +168,7 @@ def propagate(
     wave
         The field at the root; the one at the end is returned.
     """
-    (z_root, offset), per_height = heights, 1.0 / building.height
+    (z_root, offset), inv_height = heights, 1.0 / building.height
     for k in range(n):
         kind = leg.types[k, TYPE]
         if kind >= PASS_PARTIAL:
@@ -176,15 +176,15 @@ def propagate(
                 wave = transmit(building, tables, leg, k, ray, heights, wave)
             continue
         z = z_root + ray.slope * load(leg.interactions[k, DISTANCE])
-        wave = bounced(ray, z * per_height, wave)
+        wave = apply_bounces(ray, z * inv_height, wave)
         slab = lanes_of(float(leg.types[k, SURFACE]))
         if kind == REFLECT_PARTIAL:
             z = in_building(z + offset, building.height)
-            slab = maximum(materials_at(building.plan, leg.types[k, SURFACE], z), 0.0)
+            slab = maximum(slabs_at(building.plan, leg.types[k, SURFACE], z), 0.0)
         normal = load(leg.interactions[k, NORMAL])
         cosine = absolute(normal) * ray.cos_elevation
         tm, mix = slab_lookup(tables.reflection, tables.slab_rows, slab, cosine)
         a, b = load(leg.interactions[k, SKEW]), -normal * wave.sin_elevation
         t = (wave.v * a + wave.h * b) * mix
         wave = Wave(t * a - tm * wave.v, tm * wave.h - t * b, wave.sin_elevation, wave.bounce_count)
-    return bounced(ray, (z_root + ray.slope * length) * per_height, wave)
+    return apply_bounces(ray, (z_root + ray.slope * length) * inv_height, wave)

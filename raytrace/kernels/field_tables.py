@@ -32,9 +32,9 @@ class FieldTables(NamedTuple):
     slab_rows
         Rows of a slab in the tables that follow: steps of the cosine of incidence, and 2.
     reflection
-        (n_slabs * slab_rows, 4) see `raytrace.radio.materials.slab_tables`.
+        (n_slabs * slab_rows, 4) see `raytrace.radio.tables.slab_tables`.
     transmission
-        (n_slabs * slab_rows, 4) see `raytrace.radio.materials.transmission_tables`; empty where
+        (n_slabs * slab_rows, 4) see `raytrace.radio.tables.transmission_tables`; empty where
         paths go through no wall.
     max_reflectance
         (n_slabs * slab_rows,) largest reflected fraction of the power at a cosine of incidence
@@ -50,7 +50,7 @@ class FieldTables(NamedTuple):
         antennas are rotationally symmetric and V-polarised.
     patterns
         (n_elevations * n_azimuths, 4) otherwise, of transmitter and receiver: real and imaginary
-        parts of V and H, elevation by elevation (see `raytrace.radio.antennas.antenna_tables`);
+        parts of V and H, elevation by elevation (see `raytrace.radio.tables.pattern_tables`);
         empty where `transmit` and `receive` are used.
     azimuths
         Number of azimuths in `patterns`.

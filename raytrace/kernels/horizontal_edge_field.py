@@ -20,13 +20,13 @@ from raytrace.kernels.wedge import face_angles
 
 
 @jit(inline=True)
-def root_of_squares(a: Lanes, b: Lanes) -> Lanes:
-    """Length of vectors with two components."""
+def hypot(a: Lanes, b: Lanes) -> Lanes:
+    """Lengths of vectors with two components."""
     return sqrt(a * a + b * b)
 
 
 @jit(fast=True, inner=True)
-def propagate_apart(
+def propagate_not_inlined(
     building: Building,
     tables: FieldTables,
     leg: Leg,
@@ -36,7 +36,7 @@ def propagate_apart(
     heights: tuple[Lanes, float],
     wave: Wave,
 ) -> Wave:
-    """`field.propagate`, compiled apart."""
+    """`field.propagate`, not inlined."""
     return propagate(building, tables, leg, n, length, ray, heights, wave)
 
 
@@ -48,7 +48,7 @@ def edge_gain(
     legs: EdgeLegs,
     images: Floats,
     offsets: tuple[float, float],
-    n_walls: Lanes,
+    n_transmissions: Lanes,
     work: EdgeWorkspace,
 ) -> ComplexLanes:
     """Gains of paths.
@@ -59,8 +59,8 @@ def edge_gain(
         The geometry of the trace, the tables of its fields, the paths and their legs.
     images
         (n, >= 2) of the transmitter in its beams [m].
-    offsets, n_walls
-        Height offsets before and behind the edge [m], and how many walls the paths go through.
+    offsets, n_transmissions
+        Height offsets before and behind the edge [m], and the paths' numbers of transmissions.
     work
         What they meet.
     """
@@ -69,37 +69,37 @@ def edge_gain(
     ray_out = new_ray(building, tables, legs.slope_out, path.bounces_out)
     heights = lanes_of(geometry.transmitter[2]), offsets[0]
     wave = launch(tables, legs.departure, ray_in.sin_elevation)
-    wave = propagate_apart(
+    wave = propagate_not_inlined(
         building, tables, work.leg_in, legs.n_in, legs.length_in, ray_in, heights, wave
     )
     # direction of arrival at the edge, from the image of the transmitter in the last beam
     x, y = from_frame(frame, path.u)
     vx = (x - images[path.beam_in, IMAGE_X]) / legs.length_in
     vy = (y - images[path.beam_in, IMAGE_Y]) / legs.length_in
-    rise_in, per_before = edge.z - path.z_in, 1.0 / path.before
-    sin_beta = math.hypot(rise_in, path.h_in) * per_before
+    rise_in, inv_before = edge.z - path.z_in, 1.0 / path.before
+    sin_beta = math.hypot(rise_in, path.h_in) * inv_before
     ux, uy = legs.leaving
     cos_beta = ray_out.cos_elevation * (ux * frame[0] + uy * frame[1]) * -edge.up
     # into the edge's polarisations, along it and across, and out again: two rotations
-    along, across = turned_to_edge(frame, vx, vy, rise_in * per_before)
-    per_turn = 1.0 / (sin_beta * sin_beta)
+    along, across = turned_to_edge(frame, vx, vy, rise_in * inv_before)
+    inv_sin2 = 1.0 / (sin_beta * sin_beta)
     at_edge = (
-        (wave.v * along + wave.h * across) * per_turn,
-        (wave.h * along - wave.v * across) * per_turn,
+        (wave.v * along + wave.h * across) * inv_sin2,
+        (wave.h * along - wave.v * across) * inv_sin2,
     )
-    transmits = validity_weight(n_walls, geometry.max_walls - 1)
+    transmits = validity_weight(n_transmissions, geometry.max_transmissions - 1)
     parallel, normal = over_edge(tables, path, (sin_beta, cos_beta), at_edge, transmits, work)
     along, across = turned_to_edge(frame, ux, uy, ray_out.sin_elevation)
     v, h = parallel * along - normal * across, parallel * across + normal * along
     wave, heights = Wave(v, h, ray_out.sin_elevation, lanes_of(0.0)), (lanes_of(edge.z), offsets[1])
-    wave = propagate_apart(
+    wave = propagate_not_inlined(
         building, tables, work.leg_out, legs.n_out, legs.length_out, ray_out, heights, wave
     )
     total = path.before + path.after
     product = path.before * path.after
-    size = (tables.wavelength / (4.0 * math.pi)) / (sqrt(product * total) * sin_beta)
-    turned = phasor(tables.cis, total * (1.0 / tables.wavelength))
-    gain = receive(tables, wave, legs.arriving) * (turned * size)
+    spreading = (tables.wavelength / (4.0 * math.pi)) / (sqrt(product * total) * sin_beta)
+    phase = phasor(tables.cis, total * (1.0 / tables.wavelength))
+    gain = receive(tables, wave, legs.arriving) * (phase * spreading)
     return gain * common_factor(2.0, tables.wavelength)
 
 
@@ -124,12 +124,12 @@ def over_edge(
     edge = path.edge
     z_in, z_out = edge.up * (path.z_in - edge.z), (path.z_out - edge.z) * edge.up
     h_in, h_out = path.h_in, path.h_out
-    per_in, per_out = 1.0 / math.hypot(h_in, z_in), 1.0 / root_of_squares(h_out, z_out)
+    inv_in, inv_out = 1.0 / math.hypot(h_in, z_in), 1.0 / hypot(h_out, z_out)
     rows = work.workspace.rows
-    incident = face_angles(edge.wedge, lanes_of(z_in * per_in), lanes_of(h_in * per_in), rows)
-    at = face_angles(edge.wedge, z_out * per_out, h_out * per_out, rows)
-    grazing = (abs(h_in) + h_out) * per_out * (0.5 * GRAZING_M * per_in)
+    incident = face_angles(edge.wedge, lanes_of(z_in * inv_in), lanes_of(h_in * inv_in), rows)
+    at = face_angles(edge.wedge, z_out * inv_out, h_out * inv_out, rows)
+    grazing = (abs(h_in) + h_out) * inv_out * (0.5 * GRAZING_M * inv_in)
     terms = wedge_terms(edge.wedge, at, incident, grazing)
     product = path.before * path.after / (path.before + path.after)
-    spread = sqrt((4.0 * math.pi / tables.wavelength) * product) * beta[0]
-    return diffracted(tables, edge.wedge, terms, spread, beta, field, transmits)
+    sqrt_2kl = sqrt((4.0 * math.pi / tables.wavelength) * product) * beta[0]
+    return diffracted(tables, edge.wedge, terms, sqrt_2kl, beta, field, transmits)

@@ -19,7 +19,7 @@ from raytrace.kernels.wedge import Wedge
 from raytrace.kernels.workspace import Workspace, new_workspace
 
 
-class HorizontalEdge(NamedTuple):
+class HorizontalEdgeArrays(NamedTuple):
     """A lintel, a sill or the top of a wall.
 
     Attributes
@@ -72,7 +72,7 @@ class HorizontalEdgeBeams(NamedTuple):
         Beams from the edge, and the receivers visible from them (see `strips.hit_from_strip`).
     """
 
-    edge: HorizontalEdge
+    edge: HorizontalEdgeArrays
     tree: Tree
     images: ImagesIn
     strips: StripTree
@@ -140,7 +140,7 @@ class EdgePath(NamedTuple):
         Weights of the paths.
     """
 
-    edge: HorizontalEdge
+    edge: HorizontalEdgeArrays
     u: Lanes
     before: Lanes
     after: Lanes
@@ -223,14 +223,14 @@ def legs_over_edge(
     beams, receivers = (path.beam_in, path.beam_out), (block.x, block.y)
     legs = unfold_over_edge(view, edge.frame, path.u, trees, beams, receivers, work)
     (n_in, length_in, wx, wy), (n_out, length_out, ux, uy) = legs
-    per_length = 1.0 / length_out
+    inv_length = 1.0 / length_out
     arriving = (
-        (load(work.images[path.beam_out, IMAGE_X]) - block.x) * per_length,
-        (load(work.images[path.beam_out, IMAGE_Y]) - block.y) * per_length,
+        (load(work.images[path.beam_out, IMAGE_X]) - block.x) * inv_length,
+        (load(work.images[path.beam_out, IMAGE_Y]) - block.y) * inv_length,
     )
     rise_in = edge.z - path.z_in
     start = -rise_in if path.bounces_in & 1 else rise_in
-    slope_out = (path.z_out - edge.z) * per_length
+    slope_out = (path.z_out - edge.z) * inv_length
     return EdgeLegs(
         n_in,
         n_out,
@@ -248,19 +248,19 @@ def legs_over_edge(
 def walls_of_leg(
     building: Building, leg: Leg, n: int, z_root: Lanes, slope: Lanes, offset: float
 ) -> tuple[Lanes, Mask]:
-    """`validity.walls_met`, compiled apart."""
+    """`validity.walls_met`, not inlined."""
     return walls_met(building, leg, n, z_root, slope, offset)
 
 
 @jit(inner=True)
 def walls_over_edge(
     geometry: TraceGeometry,
-    edge: HorizontalEdge,
+    edge: HorizontalEdgeArrays,
     legs: EdgeLegs,
     offsets: tuple[float, float],
     work: EdgeWorkspace,
 ) -> tuple[Lanes, Mask]:
-    """How many walls paths go through, and which graze an edge, as for `validity.walls_met`."""
+    """Transmissions on paths, and which graze an edge, as for `validity.walls_met`."""
     building, z = geometry.building, lanes_of(geometry.transmitter[2])
     before, grazing = walls_of_leg(building, work.leg_in, legs.n_in, z, legs.slope_in, offsets[0])
     z = lanes_of(edge.z)

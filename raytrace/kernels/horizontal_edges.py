@@ -12,11 +12,11 @@ from raytrace.kernels.bounds import free_space
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field_tables import FieldTables
-from raytrace.kernels.horizontal_edge_field import edge_gain, root_of_squares
+from raytrace.kernels.horizontal_edge_field import edge_gain, hypot
 from raytrace.kernels.horizontal_edge_legs import (
     EdgePath,
     EdgeWorkspace,
-    HorizontalEdge,
+    HorizontalEdgeArrays,
     HorizontalEdgeBeams,
     legs_over_edge,
     walls_over_edge,
@@ -68,7 +68,7 @@ class Seen(NamedTuple):
 
 
 @jit(inline=True)
-def seen_from(edge: HorizontalEdge, seen: Floats, block: Block, work: EdgeWorkspace) -> Seen:
+def seen_from(edge: HorizontalEdgeArrays, seen: Floats, block: Block, work: EdgeWorkspace) -> Seen:
     """Receivers of a block in the frame of an edge; sets `work.across`."""
     rows = work.workspace.rows
     for j in range(WIDTH):
@@ -77,7 +77,7 @@ def seen_from(edge: HorizontalEdge, seen: Floats, block: Block, work: EdgeWorksp
         rows[2, j], rows[3, j] = seen[hit, 2], seen[hit, 3]
     h = load(rows[1])
     for k in range(len(work.across)):
-        store(work.across[k], root_of_squares(h, load(work.workspace.image_z[k]) - edge.z))
+        store(work.across[k], hypot(h, load(work.workspace.image_z[k]) - edge.z))
     return Seen(load(rows[0]), h, load(rows[2]), load(rows[3]))
 
 
@@ -105,11 +105,13 @@ def add_edge_paths(
     grazing, excess = path.weight >= 0.0, path.before + path.after - block.straight
     for side in range(len(OFFSETS_OF_LEGS_M)):
         offsets = OFFSETS_OF_LEGS_M[side]
-        n_walls, grazes = walls_over_edge(geometry, path.edge, legs, offsets, work)
-        weight = path.weight * validity_weight(n_walls, geometry.max_walls)
+        n_transmissions, grazes = walls_over_edge(geometry, path.edge, legs, offsets, work)
+        weight = path.weight * validity_weight(n_transmissions, geometry.max_transmissions)
         weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.25)
         if any_of(weight > 0.0):
-            gain = edge_gain(geometry, tables, path, legs, trees[0].beam, offsets, n_walls, work)
+            gain = edge_gain(
+                geometry, tables, path, legs, trees[0].beam, offsets, n_transmissions, work
+            )
             count_path(work.workspace, path.order, weight)
             bundle = with_path(bundle, gain, excess, weight, legs.arriving)
             if record.used[0] >= 0:
@@ -161,7 +163,7 @@ def sum_horizontal_edge(
                 continue
             x, h = images.x[p], images.h[p]
             if collector.min_power > 0.0:
-                bound = free_space(tables, root_of_squares(abs(h) + seen.h, seen.x - x))
+                bound = free_space(tables, hypot(abs(h) + seen.h, seen.x - x))
                 n_images = 2.0 * budget * (budget + 1.0) + 1.0
                 weight_here = apply_power_threshold(
                     collector, workspace, bound, weight_here, n_images
@@ -175,8 +177,8 @@ def sum_horizontal_edge(
                     if not any_of(weight > 0.0):
                         continue
                     path = EdgePath(
-                        edge, u, root_of_squares(lanes_of(across_in), u - x),
-                        root_of_squares(across_out, u - seen.x), h, seen.h, z_in[a],
+                        edge, u, hypot(lanes_of(across_in), u - x),
+                        hypot(across_out, u - seen.x), h, seen.h, z_in[a],
                         load(workspace.image_z[b]), bounces[a], bounces[b], images.beam[p],
                         block.beam, p, a, b, order + bounces[a] + bounces[b], weight,
                     )  # fmt: skip

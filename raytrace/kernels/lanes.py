@@ -83,7 +83,7 @@ def where_complex(chosen: Mask, a: ComplexLanes, b: ComplexLanes) -> ComplexLane
     return np.where(chosen, a, b)
 
 
-def none_chosen() -> Mask:
+def all_false() -> Mask:
     """Mask of eight false."""
     return np.zeros(WIDTH, np.bool_)
 

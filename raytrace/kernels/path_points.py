@@ -14,7 +14,7 @@ from raytrace.kernels.horizontal_edge_legs import (
 )
 from raytrace.kernels.horizontal_edges import OFFSETS_OF_LEGS_M
 from raytrace.kernels.lanes import lane, lanes_of
-from raytrace.kernels.plan_view import PlanView, folded, material_at
+from raytrace.kernels.plan_view import PlanView, folded, slab_at
 from raytrace.kernels.records import Record
 from raytrace.kernels.reflections import ReflectionBeams
 from raytrace.kernels.strips import from_frame
@@ -52,7 +52,7 @@ def interaction(view: PlanView, kind: int, surface: int, z: float) -> int:
     if kind == PASS_WALL:
         return TRANSMISSION
     if kind == PASS_PARTIAL:
-        return NOTHING if material_at(view, surface, z) < 0 else TRANSMISSION
+        return NOTHING if slab_at(view, surface, z) < 0 else TRANSMISSION
     return REFLECTION
 
 
@@ -147,7 +147,7 @@ def reflection_points(
     points: Floats,
     kinds: Int8s,
 ) -> None:
-    """Write points (n, most, 3) and interactions (n, most - 2) of recorded reflection paths."""
+    """Write points (n, k, 3) and interactions (n, k - 2) of recorded reflection paths."""
     building, receivers, hits = geometry.building, geometry.receivers, beams.hits
     z = geometry.transmitter[2]
     for path in range(record.used[0]):

@@ -10,9 +10,9 @@ from raytrace.kernels.lanes import (
     Mask,
     Number,
     absolute,
+    all_false,
     floor,
     lanes_of,
-    none_chosen,
     where,
 )
 
@@ -51,10 +51,11 @@ class PlanView(NamedTuple):
         behind[behind_first[e]:behind_first[e + 1]].
     cell_of
         (n_edges,) the cell of each edge.
-    profile_bins
-        (n_profiles + 1,) height intervals of profile p are profile_bins[p]:profile_bins[p + 1].
-    bin_top, bin_material
-        Upper height [m] and material of each interval; material -1 is open.
+    profile_intervals
+        (n_profiles + 1,) height intervals of profile p are
+        profile_intervals[p]:profile_intervals[p + 1].
+    interval_top, interval_slab
+        Upper height [m] and slab of each interval; slab -1 is open.
     """
 
     cell_edges: Ints
@@ -69,9 +70,9 @@ class PlanView(NamedTuple):
     behind_first: Ints
     behind: Ints
     cell_of: Ints
-    profile_bins: Ints
-    bin_top: Floats
-    bin_material: Ints
+    profile_intervals: Ints
+    interval_top: Floats
+    interval_slab: Ints
 
 
 @jit(inline=True)
@@ -98,13 +99,13 @@ def folded(z: float, height: float) -> float:
 
 
 @jit(inline=True)
-def material_at(view: PlanView, profile: int, z: float) -> int:
-    """Material of a profile at height z, -1 where it is open."""
-    k = int(view.profile_bins[profile])
-    last = view.profile_bins[profile + 1] - 1
-    while k < last and z > view.bin_top[k]:
+def slab_at(view: PlanView, profile: int, z: float) -> int:
+    """Slab of a profile at height z, -1 where it is open."""
+    k = int(view.profile_intervals[profile])
+    last = view.profile_intervals[profile + 1] - 1
+    while k < last and z > view.interval_top[k]:
         k += 1
-    return int(view.bin_material[k])
+    return int(view.interval_slab[k])
 
 
 @jit(inline=True)
@@ -117,20 +118,20 @@ def in_building(z: Lanes, height: float) -> Lanes:
 
 
 @jit(inline=True)
-def materials_at(view: PlanView, profile: int, z: Lanes) -> Lanes:
-    """`material_at` for eight heights."""
-    k = int(view.profile_bins[profile + 1]) - 1
-    material = lanes_of(float(view.bin_material[k]))
-    while k > view.profile_bins[profile]:
+def slabs_at(view: PlanView, profile: int, z: Lanes) -> Lanes:
+    """`slab_at` for eight heights."""
+    k = int(view.profile_intervals[profile + 1]) - 1
+    slab = lanes_of(float(view.interval_slab[k]))
+    while k > view.profile_intervals[profile]:
         k -= 1
-        material = where(z <= view.bin_top[k], float(view.bin_material[k]), material)
-    return material
+        slab = where(z <= view.interval_top[k], float(view.interval_slab[k]), slab)
+    return slab
 
 
 @jit(inline=True)
 def at_horizontal_edge(view: PlanView, profile: int, z: Lanes) -> Mask:
     """Which heights are within `GRAZING_M` of a horizontal edge of a profile."""
-    near = none_chosen()
-    for k in range(view.profile_bins[profile], view.profile_bins[profile + 1] - 1):
-        near = near | (absolute(z - view.bin_top[k]) < GRAZING_M)
+    near = all_false()
+    for k in range(view.profile_intervals[profile], view.profile_intervals[profile + 1] - 1):
+        near = near | (absolute(z - view.interval_top[k]) < GRAZING_M)
     return near

@@ -13,7 +13,7 @@ from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
 from raytrace.kernels.field_tables import FieldTables, phasor
-from raytrace.kernels.lanes import any_of, lanes_of, load, none_chosen
+from raytrace.kernels.lanes import all_false, any_of, lanes_of, load
 from raytrace.kernels.records import record_paths
 from raytrace.kernels.sums import empty_bundle, with_path
 from raytrace.kernels.unfolding import Leg, unfold
@@ -73,10 +73,10 @@ def sum_reflections(
         i = block.beam
         order = tree.link[i, ORDER]
         n, length, ux, uy = unfold(building.plan, tree.link, tree.beam, i, (block.x, block.y), leg)
-        per_length = 1.0 / length
+        inv_length = 1.0 / length
         arriving = (
-            (tree.beam[i, IMAGE_X] - block.x) * per_length,
-            (tree.beam[i, IMAGE_Y] - block.y) * per_length,
+            (tree.beam[i, IMAGE_X] - block.x) * inv_length,
+            (tree.beam[i, IMAGE_Y] - block.y) * inv_length,
         )
         n_images = 2 * (geometry.max_reflections - order) + 1
         weight_here = block.weight
@@ -86,21 +86,21 @@ def sum_reflections(
                 collector, workspace, bound, weight_here, float(n_images)
             )
         bundle = empty_bundle()
-        k, side, grazing = zero, zero, none_chosen()
+        k, side, grazing = zero, zero, all_false()
         while k < n_images:
-            slope = (load(workspace.image_z[k]) - z_transmitter) * per_length
+            slope = (load(workspace.image_z[k]) - z_transmitter) * inv_length
             offset = ONE_SIDED_OFFSETS_M[side]
-            n_walls, grazes = walls_met(building, leg, n, z_root, slope, offset)
-            weight = weight_here * validity_weight(n_walls, geometry.max_walls)
+            n_transmissions, grazes = walls_met(building, leg, n, z_root, slope, offset)
+            weight = weight_here * validity_weight(n_transmissions, geometry.max_transmissions)
             weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.5)
             if any_of(weight > 0.0):
                 ray = new_ray(building, tables, slope, geometry.image_bounces[k])
                 wave = launch(tables, (ux, uy), ray.sin_elevation)
                 wave = propagate(building, tables, leg, n, length, ray, (z_root, offset), wave)
                 distance = length * ray.sec_elevation
-                turned = phasor(tables.cis, distance * (1.0 / wavelength))
-                size = (wavelength / (4.0 * math.pi)) / distance
-                gain = receive(tables, wave, arriving) * (turned * size)
+                phase = phasor(tables.cis, distance * (1.0 / wavelength))
+                spreading = (wavelength / (4.0 * math.pi)) / distance
+                gain = receive(tables, wave, arriving) * (phase * spreading)
                 count_path(workspace, order + ray.bounces, weight)
                 bundle = with_path(bundle, gain, distance - block.straight, weight, arriving)
                 if collector.record.used[0] >= 0:

@@ -279,7 +279,7 @@ def grow_strips(
     root, root_cell
         The edge, as seen from the cell that the beams go into.
     limits
-        Most reflections, and most full walls gone through.
+        Maximum numbers of reflections and of transmissions through full walls.
     """
     return StripTree(*grow_strip_arrays(view, bounces, root, root_cell, limits))
 

@@ -29,9 +29,9 @@ class Sums(NamedTuple):
     n_paths
         (n, max_reflections + 1) number of paths by reflections.
     moments
-        (n, 5) sums of power times excess path length over the straight line and times its square
-        [m, m^2]; sums of power times cosine and times sine of the azimuth of arrival; power of the
-        strongest path.
+        (n, N_MOMENTS) sums of power times excess path length over the straight line and times its
+        square [m, m^2]; sums of power times cosine and times sine of the azimuth of arrival; power
+        of the strongest path.
     left_out
         (n,) bound on the power of the paths below the power threshold.
     bins
@@ -50,8 +50,12 @@ class Sums(NamedTuple):
 LEVELS = 400
 """Rows of `Sums.bins`."""
 
-EXCESS, EXCESS_SQUARED, COSINE, SINE, STRONGEST = range(5)
+N_MOMENTS = 5
+EXCESS, EXCESS_SQUARED, COSINE, SINE, STRONGEST = range(N_MOMENTS)
 """Columns of `Sums.moments`."""
+
+FIRST_MOMENT = 3
+"""Number of the fields of `Bundle` before its moments."""
 
 
 def new_sums(n_receivers: int, max_reflections: int) -> Sums:
@@ -60,7 +64,7 @@ def new_sums(n_receivers: int, max_reflections: int) -> Sums:
         np.zeros(n_receivers, np.complex128),
         np.zeros(n_receivers),
         np.zeros((n_receivers, max_reflections + 1)),
-        np.zeros((n_receivers, 5)),
+        np.zeros((n_receivers, N_MOMENTS)),
         np.zeros(n_receivers),
         np.zeros(LEVELS),
     )
@@ -117,13 +121,13 @@ def with_path(
     real, imag = where(counts, real_of(gain), 0.0), where(counts, imag_of(gain), 0.0)
     size = real * real + imag * imag
     power = size * weight
-    late = power * excess
+    power_excess = power * excess
     return Bundle(
         bundle.real + real * weight,
         bundle.imag + imag * weight,
         bundle.power + power,
-        bundle.excess + late,
-        bundle.excess_squared + late * excess,
+        bundle.excess + power_excess,
+        bundle.excess_squared + power_excess * excess,
         bundle.cosine + power * direction[0],
         bundle.sine + power * direction[1],
         maximum(bundle.strongest, size),

@@ -114,9 +114,9 @@ def unfold(
         x, y = px + t * (x - px), py + t * (y - py)
         rest = rest * t
         i = link[i, PARENT]
-        per_length = 1.0 / rest
-        ux = (x - image_of(images, i, IMAGE_X)) * per_length
-        uy = (y - image_of(images, i, IMAGE_Y)) * per_length
+        inv_length = 1.0 / rest
+        ux = (x - image_of(images, i, IMAGE_X)) * inv_length
+        uy = (y - image_of(images, i, IMAGE_Y)) * inv_length
         nx, ny = view.plane[e, 0], view.plane[e, 1]
         store(leg.interactions[k, DISTANCE], rest)
         store(leg.interactions[k, SKEW], nx * uy - ny * ux)
@@ -134,7 +134,7 @@ def type_and_surface(view: PlanView, e: int, passed: bool) -> tuple[int, int]:
     """Type of the interaction at an edge, and its slab or profile."""
     profile = int(view.profile[e])
     if view.kind[e] == WALL:
-        slab = int(view.bin_material[view.profile_bins[profile]])
+        slab = int(view.interval_slab[view.profile_intervals[profile]])
         return (PASS_WALL if passed else REFLECT_WALL), slab
     if passed:
         return PASS_PARTIAL, profile

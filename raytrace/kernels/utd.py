@@ -199,7 +199,7 @@ def diffracted(
     tables: FieldTables,
     wedge: Wedge,
     terms: WedgeTerms,
-    spread: Lanes,
+    sqrt_2kl: Lanes,
     beta: tuple[Lanes, Lanes],
     field: tuple[ComplexLanes, ComplexLanes],
     transmits: Lanes,
@@ -210,7 +210,7 @@ def diffracted(
     ----------
     tables, wedge, terms
         Tables, the wedge's faces, and the pairs of directions.
-    spread
+    sqrt_2kl
         sqrt(2 k L), L the distance parameter [1].
     beta
         Sine and cosine of the angle of the diffracted ray with the edge, about which the free
@@ -227,8 +227,8 @@ def diffracted(
         # cot((pi + b) / 4) + cot((pi - b) / 4) = 2 / cos(b / 2): two terms in one, not singular;
         # the mixed parts of the two faces have opposite signs, and the terms' difference is
         # sin(b / 2) times their sum
-        incident = half_plane_term(table, spread, terms.cos_minus)
-        reflected = half_plane_term(table, spread, terms.cos_plus)
+        incident = half_plane_term(table, sqrt_2kl, terms.cos_minus)
+        reflected = half_plane_term(table, sqrt_2kl, terms.cos_plus)
         mixed = mixed * (reflected * terms.sin_plus)
         te, tm = te * reflected, tm * reflected
         if len(tables.transmission) > 0:
@@ -238,10 +238,10 @@ def diffracted(
             incident * along + te * field[0] + mixed * field[1],
             incident * across + tm * field[1] - mixed * field[0],
         )
-    at_n = wedge_term(table, spread, terms.cotangent[2], terms.angular[2])
-    at_o = wedge_term(table, spread, terms.cotangent[3], terms.angular[3])
-    incident = wedge_term(table, spread, terms.cotangent[0], terms.angular[0])
-    incident = incident + wedge_term(table, spread, terms.cotangent[1], terms.angular[1])
+    at_n = wedge_term(table, sqrt_2kl, terms.cotangent[2], terms.angular[2])
+    at_o = wedge_term(table, sqrt_2kl, terms.cotangent[3], terms.angular[3])
+    incident = wedge_term(table, sqrt_2kl, terms.cotangent[0], terms.angular[0])
+    incident = incident + wedge_term(table, sqrt_2kl, terms.cotangent[1], terms.angular[1])
     n_te, n_mixed, n_tm = face_dyad(tables, wedge.n_slab, terms.n_cosine, terms.n_turn, beta)
     te, tm = te * at_o + n_te * at_n, tm * at_o + n_tm * at_n
     mixed = mixed * at_o + n_mixed * at_n
@@ -272,17 +272,17 @@ def transmitted(
 
 
 @jit(inline=True, fast=True)
-def wedge_term(table: Floats, spread: Lanes, cot: Lanes, angular: Lanes) -> ComplexLanes:
+def wedge_term(table: Floats, sqrt_2kl: Lanes, cot: Lanes, angular: Lanes) -> ComplexLanes:
     """Cot * F, one of the four terms (docs/theory.md, eq. 17)."""
-    s = spread * angular
+    s = sqrt_2kl * angular
     return transition_ratio(table, s) * (cot * s)
 
 
 @jit(inline=True, fast=True)
-def half_plane_term(table: Floats, spread: Lanes, cosine: Lanes) -> ComplexLanes:
+def half_plane_term(table: Floats, sqrt_2kl: Lanes, cosine: Lanes) -> ComplexLanes:
     """2 F / cosine, two of the four terms of a half plane; 0, its mean, on a shadow boundary."""
-    size = where(absolute(cosine) > 0.0, copysign(2.0 * spread, cosine), 0.0)
-    return transition_ratio(table, spread * absolute(cosine)) * size
+    size = where(absolute(cosine) > 0.0, copysign(2.0 * sqrt_2kl, cosine), 0.0)
+    return transition_ratio(table, sqrt_2kl * absolute(cosine)) * size
 
 
 @jit(inline=True)

@@ -7,8 +7,8 @@ paths that pass beside it, with their weight halved: one-sided evaluations (docs
 
 from raytrace.kernels.building import Building
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.lanes import Lanes, Mask, any_of, lanes_of, load, none_chosen, where
-from raytrace.kernels.plan_view import GRAZING_M, at_horizontal_edge, in_building, materials_at
+from raytrace.kernels.lanes import Lanes, Mask, all_false, any_of, lanes_of, load, where
+from raytrace.kernels.plan_view import GRAZING_M, at_horizontal_edge, in_building, slabs_at
 from raytrace.kernels.unfolding import (
     DISTANCE,
     PASS_PARTIAL,
@@ -20,7 +20,8 @@ from raytrace.kernels.unfolding import (
 )
 
 INVALID = -1e6
-"""Number of walls of a path whose heights rule it out; it stays below 0 when walls are added."""
+"""Number of transmissions of a path whose heights rule it out; it stays below 0 when others are
+added."""
 
 OFFSET_M = 2.0 * GRAZING_M
 """Offset of the heights in a one-sided evaluation [m]."""
@@ -34,7 +35,7 @@ below and above it."""
 def walls_met(
     building: Building, leg: Leg, n: int, z_root: Lanes, slope: Lanes, offset: float
 ) -> tuple[Lanes, Mask]:
-    """How many walls legs go through; below 0 for one that is reflected where there is no wall.
+    """Numbers of transmissions on legs; below 0 for one that is reflected where there is no wall.
 
     Parameters
     ----------
@@ -47,32 +48,34 @@ def walls_met(
 
     Returns
     -------
-    n_walls, grazing
-        Number of walls, and which legs graze a horizontal edge.
+    n_transmissions, grazing
+        Numbers of transmissions, and which legs graze a horizontal edge.
     """
-    n_walls, grazing = lanes_of(0.0), none_chosen()
+    n_transmissions, grazing = lanes_of(0.0), all_false()
     for k in range(n):
         kind, surface = leg.types[k, TYPE], leg.types[k, SURFACE]
         if kind == REFLECT_WALL:
             continue
         if kind == PASS_WALL:
-            n_walls = n_walls + 1.0
+            n_transmissions = n_transmissions + 1.0
             continue
         z = z_root + slope * load(leg.interactions[k, DISTANCE]) + offset
         z = in_building(z, building.height)
         grazing = grazing | at_horizontal_edge(building.plan, surface, z)
-        solid = materials_at(building.plan, surface, z) >= 0.0
+        solid = slabs_at(building.plan, surface, z) >= 0.0
         if kind == PASS_PARTIAL:
-            n_walls = where(solid, n_walls + 1.0, n_walls)
+            n_transmissions = where(solid, n_transmissions + 1.0, n_transmissions)
         else:
-            n_walls = where(solid, n_walls, INVALID)
-    return n_walls, grazing
+            n_transmissions = where(solid, n_transmissions, INVALID)
+    return n_transmissions, grazing
 
 
 @jit(inline=True)
-def validity_weight(n_walls: Lanes, max_walls: int) -> Lanes:
-    """1 for valid paths that go through no more walls than allowed, 0 for others."""
-    return where((n_walls >= 0.0) & (n_walls <= float(max_walls)), lanes_of(1.0), 0.0)
+def validity_weight(n_transmissions: Lanes, max_transmissions: int) -> Lanes:
+    """1 for valid paths with no more transmissions than allowed, 0 for others."""
+    return where(
+        (n_transmissions >= 0.0) & (n_transmissions <= float(max_transmissions)), lanes_of(1.0), 0.0
+    )
 
 
 @jit(inline=True)

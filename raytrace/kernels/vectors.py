@@ -213,7 +213,7 @@ _implement(lanes.maximum, LANES, *_REAL_PAIRS)(
 )
 
 
-_implement(lanes.none_chosen, MASK, ())(lambda b, x: ir.Constant(_BITS, [0] * WIDTH))
+_implement(lanes.all_false, MASK, ())(lambda b, x: ir.Constant(_BITS, [0] * WIDTH))
 
 
 def _as_byte(builder: ir.IRBuilder, mask: Value) -> Value:

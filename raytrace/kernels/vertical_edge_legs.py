@@ -17,7 +17,7 @@ from raytrace.kernels.unfolding import Leg, has_height_limits, max_interactions,
 from raytrace.kernels.wedge import ALONG_FACE, FaceAngles, Wedge, angle_from, face_angles
 
 
-class VerticalEdge(NamedTuple):
+class VerticalEdgeArrays(NamedTuple):
     """A vertical edge.
 
     Attributes
@@ -52,9 +52,9 @@ class LegsIn(NamedTuple):
     has_height_limits
         (n,) see `unfolding.has_height_limits`.
     angles
-        (n, 7) see `utd.FaceAngles`.
+        (n, 7) see `wedge.FaceAngles`.
     interactions, types
-        (n, most, 5, 8), (n, most, 2) their legs, the same in all eight lanes.
+        (n, n_max, 5, 8), (n, n_max, 2) their legs, the same in all eight lanes.
     """
 
     order: Ints
@@ -69,7 +69,7 @@ class LegsIn(NamedTuple):
 
 
 @jit(inline=True)
-def angles_towards(edge: VerticalEdge, ux: Lanes, uy: Lanes, rows: Floats) -> FaceAngles:
+def angles_towards(edge: VerticalEdgeArrays, ux: Lanes, uy: Lanes, rows: Floats) -> FaceAngles:
     """Angles of horizontal directions from the o-face; `rows` is scratch."""
     c, s = math.cos(edge.o_face), math.sin(edge.o_face)
     return face_angles(edge.wedge, ux * c + uy * s, uy * c - ux * s, rows)
@@ -86,7 +86,7 @@ def angles_of(legs: LegsIn, p: int) -> FaceAngles:
 
 
 def legs_to_edge(
-    view: PlanView, tree: Tree, beams: Int32s, weight: Floats, edge: VerticalEdge
+    view: PlanView, tree: Tree, beams: Int32s, weight: Floats, edge: VerticalEdgeArrays
 ) -> LegsIn:
     """Unfold the legs from the transmitter to an edge.
 
@@ -100,7 +100,7 @@ def legs_to_edge(
         The edge; legs that arrive within its wall or along a face are left out: a face reflects
         a grazing ray with -1, so that the two cancel.
     """
-    n, most = len(beams), max_interactions(tree.link)
+    n, n_max = len(beams), max_interactions(tree.link)
     legs = LegsIn(
         np.empty(n, np.int64),
         np.empty(n, np.int64),
@@ -109,8 +109,8 @@ def legs_to_edge(
         np.empty((n, 2)),
         np.empty(n, np.bool_),
         np.empty((n, 7)),
-        np.empty((n, most, 5, WIDTH)),
-        np.empty((n, most, 2), np.int64),
+        np.empty((n, n_max, 5, WIDTH)),
+        np.empty((n, n_max, 2), np.int64),
     )
     kept = fill_legs(view, tree, beams, weight, edge, legs)
     return LegsIn(
@@ -128,7 +128,12 @@ def legs_to_edge(
 
 @jit()
 def fill_legs(
-    view: PlanView, tree: Tree, beams: Int32s, weight: Floats, edge: VerticalEdge, legs: LegsIn
+    view: PlanView,
+    tree: Tree,
+    beams: Int32s,
+    weight: Floats,
+    edge: VerticalEdgeArrays,
+    legs: LegsIn,
 ) -> int:
     """Fill in legs as `legs_to_edge` makes them; return how many there are."""
     rows, kept = np.empty((3, WIDTH)), 0
@@ -145,8 +150,8 @@ def fill_legs(
         legs.order[kept], legs.n_interactions[kept] = tree.link[i, ORDER], n
         legs.length[kept], legs.weight[kept] = lane(length, 0), weight[b]
         legs.has_height_limits[kept] = has_height_limits(leg, n)
-        per_length = 1.0 / math.hypot(dx, dy)
-        angles = angles_towards(edge, lanes_of(dx * per_length), lanes_of(dy * per_length), rows)
+        inv_length = 1.0 / math.hypot(dx, dy)
+        angles = angles_towards(edge, lanes_of(dx * inv_length), lanes_of(dy * inv_length), rows)
         for k, angle in enumerate(angles):
             legs.angles[kept, k] = lane(angle, 0)
         kept += 1

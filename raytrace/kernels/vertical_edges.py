@@ -23,11 +23,11 @@ from raytrace.kernels.lanes import (
     Lanes,
     Mask,
     absolute,
+    all_false,
     any_of,
     lanes_of,
     load,
     minimum,
-    none_chosen,
     sqrt,
     where,
 )
@@ -44,7 +44,12 @@ from raytrace.kernels.validity import (
     validity_weight,
     walls_met,
 )
-from raytrace.kernels.vertical_edge_legs import LegsIn, VerticalEdge, angles_of, angles_towards
+from raytrace.kernels.vertical_edge_legs import (
+    LegsIn,
+    VerticalEdgeArrays,
+    angles_of,
+    angles_towards,
+)
 from raytrace.kernels.waves import Wave, launch, receive
 from raytrace.kernels.wedge import FaceAngles
 from raytrace.kernels.workspace import (
@@ -59,7 +64,7 @@ from raytrace.kernels.workspace import (
 class VerticalEdgeBeams(NamedTuple):
     """An edge, the legs to it, the beams from it, and the receivers visible from these."""
 
-    edge: VerticalEdge
+    edge: VerticalEdgeArrays
     legs: LegsIn
     tree: Tree
     hits: Hits
@@ -70,7 +75,7 @@ class LegsOut(NamedTuple):
 
     Attributes
     ----------
-    leg, n, length, per_length, order
+    leg, n, length, inv_length, order
         The legs, their interactions, horizontal lengths [m] and their inverses, and reflections.
     angles
         The directions at the wedge.
@@ -83,7 +88,7 @@ class LegsOut(NamedTuple):
     leg: Leg
     n: int
     length: Lanes
-    per_length: Lanes
+    inv_length: Lanes
     order: int
     angles: FaceAngles
     arriving: tuple[Lanes, Lanes]
@@ -111,11 +116,11 @@ class Pair(NamedTuple):
         Horizontal direction in which the paths leave the transmitter.
     limits_in
         Whether heights matter to the leg to the edge, see `unfolding.has_height_limits`.
-    size, spread
-        Spreading factor, and sqrt(2 k L), for a horizontal path.
+    spreading, sqrt_2kl
+        Spreading factor, and sqrt(2 k L) of the UTD, for horizontal paths.
     """
 
-    edge: VerticalEdge
+    edge: VerticalEdgeArrays
     number: int
     order: int
     leg_in: Leg
@@ -126,8 +131,8 @@ class Pair(NamedTuple):
     terms: WedgeTerms
     departure: tuple[Lanes, Lanes]
     limits_in: bool
-    size: Lanes
-    spread: Lanes
+    spreading: Lanes
+    sqrt_2kl: Lanes
 
 
 @jit(inline=True, fast=True)
@@ -138,31 +143,33 @@ def legs_from_edge(
     tree, i = beams.tree, block.beam
     view, target = geometry.building.plan, (block.x, block.y)
     n, length, ux, uy = unfold(view, tree.link, tree.beam, i, target, leg)
-    per_length = 1.0 / length
+    inv_length = 1.0 / length
     arriving = (
-        (tree.beam[i, IMAGE_X] - block.x) * per_length,
-        (tree.beam[i, IMAGE_Y] - block.y) * per_length,
+        (tree.beam[i, IMAGE_X] - block.x) * inv_length,
+        (tree.beam[i, IMAGE_Y] - block.y) * inv_length,
     )
     angles = angles_towards(beams.edge, ux, uy, rows)
     order = tree.link[i, ORDER]
-    return LegsOut(leg, n, length, per_length, order, angles, arriving, has_height_limits(leg, n))
+    return LegsOut(leg, n, length, inv_length, order, angles, arriving, has_height_limits(leg, n))
 
 
 @jit(inline=True, fast=True)
-def pair_of(tables: FieldTables, edge: VerticalEdge, legs: LegsIn, p: int, out: LegsOut) -> Pair:
+def pair_of(
+    tables: FieldTables, edge: VerticalEdgeArrays, legs: LegsIn, p: int, out: LegsOut
+) -> Pair:
     """Join leg p to the edge to legs from it."""
     wavelength = tables.wavelength
     total = out.length + legs.length[p]
     product = out.length * legs.length[p]
-    size = (wavelength / (4.0 * math.pi)) / sqrt(product * total)
-    spread = sqrt((4.0 * math.pi / wavelength) * product * (1.0 / total))
-    grazing = (0.5 * GRAZING_M) * out.per_length
+    spreading = (wavelength / (4.0 * math.pi)) / sqrt(product * total)
+    sqrt_2kl = sqrt((4.0 * math.pi / wavelength) * product * (1.0 / total))
+    grazing = (0.5 * GRAZING_M) * out.inv_length
     terms = wedge_terms(edge.wedge, out.angles, angles_of(legs, p), grazing)
     departure = lanes_of(legs.departure[p, 0]), lanes_of(legs.departure[p, 1])
     return Pair(
         edge, p, out.order + legs.order[p], Leg(legs.interactions[p], legs.types[p]),
         legs.n_interactions[p], legs.length[p], out, total, terms, departure,
-        legs.has_height_limits[p], size, spread,
+        legs.has_height_limits[p], spreading, sqrt_2kl,
     )  # fmt: skip
 
 
@@ -170,24 +177,24 @@ def pair_of(tables: FieldTables, edge: VerticalEdge, legs: LegsIn, p: int, out: 
 def pair_walls(
     geometry: TraceGeometry, pair: Pair, slope: Lanes, offset: float
 ) -> tuple[Lanes, Mask]:
-    """How many walls paths go through, and which graze an edge, as for `validity.walls_met`."""
+    """Transmissions on paths, and which graze an edge, as for `validity.walls_met`."""
     building, z_root = geometry.building, lanes_of(geometry.transmitter[2])
     height, edge, out = building.height, pair.edge, pair.out
     z = z_root + slope * pair.length_in
-    n_walls, grazing = lanes_of(0.0), none_chosen()
+    n_transmissions, grazing = lanes_of(0.0), all_false()
     if edge.z_low > 0.0 or edge.z_high < height:
         z_edge = in_building(z + offset, height)
         beyond = (z_edge <= edge.z_low) | (z_edge >= edge.z_high)
-        n_walls = where(beyond, INVALID, n_walls)
+        n_transmissions = where(beyond, INVALID, n_transmissions)
         inside = minimum(absolute(z_edge - edge.z_low), absolute(z_edge - edge.z_high))
         grazing = inside < GRAZING_M
     if pair.limits_in:
         met, grazes = walls_met(building, pair.leg_in, pair.n_in, z_root, slope, offset)
-        n_walls, grazing = n_walls + met, grazing | grazes
+        n_transmissions, grazing = n_transmissions + met, grazing | grazes
     if out.has_height_limits:
         met, grazes = walls_met(building, out.leg, out.n, z, slope, offset)
-        n_walls, grazing = n_walls + met, grazing | grazes
-    return n_walls, grazing
+        n_transmissions, grazing = n_transmissions + met, grazing | grazes
+    return n_transmissions, grazing
 
 
 @jit(inline=True, fast=True)
@@ -198,9 +205,9 @@ def pair_gain(
     slope: Lanes,
     bounces: int,
     offset: float,
-    n_walls: Lanes,
+    n_transmissions: Lanes,
 ) -> tuple[ComplexLanes, Lanes]:
-    """Gains of paths through a number of walls, without the common factor, and their lengths [m].
+    """Gains of paths with some transmissions, without the common factor, and their lengths [m].
 
     With every length its horizontal part over cos_el, and sin beta = cos_el, the spreading factor
     1 / (sqrt(s s' (s + s')) sin beta) is sqrt(cos_el) over the root of the horizontal parts
@@ -217,17 +224,17 @@ def pair_gain(
         tables,
         pair.edge.wedge,
         pair.terms,
-        pair.spread * root,
+        pair.sqrt_2kl * root,
         (ray.cos_elevation, wave.sin_elevation),
         (wave.v, wave.h),
-        validity_weight(n_walls, geometry.max_walls - 1),
+        validity_weight(n_transmissions, geometry.max_transmissions - 1),
     )
     wave = Wave(field[0], field[1], wave.sin_elevation, wave.bounce_count)
     heights = z_root + slope * pair.length_in, offset
     wave = propagate(building, tables, out.leg, out.n, out.length, ray, heights, wave)
     distance = pair.total * ray.sec_elevation
-    turned = phasor(tables.cis, distance * (1.0 / tables.wavelength))
-    return receive(tables, wave, out.arriving) * (turned * (pair.size * root)), distance
+    phase = phasor(tables.cis, distance * (1.0 / tables.wavelength))
+    return receive(tables, wave, out.arriving) * (phase * (pair.spreading * root)), distance
 
 
 @jit(inline=True, fast=True)
@@ -243,17 +250,19 @@ def add_pair(
 ) -> Bundle:
     """Add the paths of a pair of legs, one for every image height."""
     n_images = 2 * (geometry.max_reflections - pair.order) + 1
-    common, per_total = common_factor(pair.edge.wedge.n, tables.wavelength), 1.0 / pair.total
+    common, inv_total = common_factor(pair.edge.wedge.n, tables.wavelength), 1.0 / pair.total
     k = side = int(np.int64(0))  # a literal would be compiled as a type of its own
-    grazing = none_chosen()
+    grazing = all_false()
     while k < n_images:
-        slope = (load(workspace.image_z[k]) - geometry.transmitter[2]) * per_total
+        slope = (load(workspace.image_z[k]) - geometry.transmitter[2]) * inv_total
         bounces, offset = geometry.image_bounces[k], ONE_SIDED_OFFSETS_M[side]
-        n_walls, grazes = pair_walls(geometry, pair, slope, offset)
-        weight = weight_here * validity_weight(n_walls, geometry.max_walls)
+        n_transmissions, grazes = pair_walls(geometry, pair, slope, offset)
+        weight = weight_here * validity_weight(n_transmissions, geometry.max_transmissions)
         weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.5)
         if any_of(weight > 0.0):
-            gain, distance = pair_gain(geometry, tables, pair, slope, bounces, offset, n_walls)
+            gain, distance = pair_gain(
+                geometry, tables, pair, slope, bounces, offset, n_transmissions
+            )
             gain = gain * common
             count_path(workspace, pair.order + bounces, weight)
             excess = distance - block.straight
@@ -310,7 +319,7 @@ def sum_vertical_edge(
             if collector.min_power > 0.0:
                 bound = wedge_bound(
                     geometry, tables, edge.wedge.is_sheet,
-                    (pair.terms.cos_minus, pair.terms.cos_plus), pair.spread, pair.total,
+                    (pair.terms.cos_minus, pair.terms.cos_plus), pair.sqrt_2kl, pair.total,
                     pair.order,
                 )  # fmt: skip
                 bound, n_paths = bound * bound_out * bounds_in[p], float(n_images)

@@ -46,7 +46,7 @@ class Wave(NamedTuple):
 def pattern_at(
     pattern: Floats, azimuths: int, x: Lanes, y: Lanes, sine: Lanes
 ) -> tuple[ComplexLanes, ComplexLanes]:
-    """V and H amplitudes in given directions (see `radio.antennas.antenna_tables`).
+    """V and H amplitudes in given directions (see `radio.tables.pattern_tables`).
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ class Wedge(NamedTuple):
     Attributes
     ----------
     n
-        Free angle over pi.
+        Exterior angle over pi.
     o_slab, n_slab
         Slabs of its faces.
     cos_part, sin_part
@@ -73,7 +73,7 @@ class FaceAngles(NamedTuple):
 
 
 def new_wedge(n: float, o_slab: int, n_slab: int) -> Wedge:
-    """Return the wedge of a free angle n pi."""
+    """Return the wedge of an exterior angle n pi."""
     part, whole = 0.5 * math.pi / n, n * math.pi
     is_sheet = abs(n - 2.0) < 1e-12 and o_slab == n_slab
     return Wedge(

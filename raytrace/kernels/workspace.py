@@ -9,7 +9,7 @@ from raytrace.arrays import Floats, Ints
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import WIDTH, Lanes, any_of, lane, lanes_of, load, store, where
 from raytrace.kernels.records import Record
-from raytrace.kernels.sums import EXCESS, STRONGEST, Bundle, Sums
+from raytrace.kernels.sums import EXCESS, FIRST_MOMENT, N_MOMENTS, STRONGEST, Bundle, Sums
 
 
 class Collector(NamedTuple):
@@ -41,7 +41,7 @@ class Workspace(NamedTuple):
     counts
         (max_reflections + 1, 8) paths to them by reflections.
     rows
-        (8, 8) scratch.
+        (FIRST_MOMENT + N_MOMENTS, 8) scratch.
     """
 
     receivers: Ints
@@ -58,7 +58,7 @@ def new_workspace(max_reflections: int) -> Workspace:
         np.full(WIDTH, -1, np.int64),
         np.empty((2 * max_reflections + 1, WIDTH)),
         np.empty((max_reflections + 1, WIDTH)),
-        np.empty((8, WIDTH)),
+        np.empty((FIRST_MOMENT + N_MOMENTS, WIDTH)),
     )
 
 
@@ -85,8 +85,8 @@ def add_bundle(sums: Sums, workspace: Workspace, n: int, bundle: Bundle) -> None
         sums.power[r] += rows[2, j]
         moments = sums.moments[r]
         for k in range(EXCESS, STRONGEST):
-            moments[k] += rows[3 + k, j]
-        moments[STRONGEST] = max(moments[STRONGEST], rows[7, j])
+            moments[k] += rows[FIRST_MOMENT + k, j]
+        moments[STRONGEST] = max(moments[STRONGEST], rows[FIRST_MOMENT + STRONGEST, j])
         for k in range(len(workspace.counts)):
             sums.n_paths[r, k] += workspace.counts[k, j]
 

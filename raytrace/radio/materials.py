@@ -60,9 +60,10 @@ class Dielectric:
                 loss = sigma / (TWO_PI * frequency_hz * VACUUM_PERMITTIVITY)
                 return complex(row.a * f_ghz**row.b, -loss)
         ranges = ", ".join(f"{row.low_ghz:g} to {row.high_ghz:g} GHz" for row in self.rows)
+        source = f" in {self.origin}" if self.origin else ""
         raise SceneError(
-            f"{self.name} at {f_ghz:g} GHz: {self.origin or 'it'} knows it at {ranges}; "
-            "choose such a frequency, another edition, or a material of your own"
+            f"{self.name} at {f_ghz:g} GHz: defined only for {ranges}{source}; "
+            "choose one of these frequencies, a different edition, or a material of your own"
         )
 
     def coefficients(
@@ -177,7 +178,7 @@ def dielectrics_of(edition: str = DEFAULT_EDITION) -> dict[str, Dielectric]:
     """
     if edition not in TABLES:
         raise SceneError(
-            f"no edition {edition!r} of the material table: there are {', '.join(TABLES)}"
+            f"no edition {edition!r} of the material table; available: {', '.join(TABLES)}"
         )
     rows = TABLES[edition]
     of_table = {name: Dielectric(name, rows[name], f"ITU-R {edition}") for name in rows}
@@ -203,10 +204,10 @@ def find_material(name: str, edition: str = DEFAULT_EDITION) -> Material:
     if name in known:
         return known[name]
     if name in MATERIAL_NAMES:
-        raise SceneError(f"ITU-R {edition} has no {name!r}: it has {', '.join(known)}")
+        raise SceneError(f"ITU-R {edition} has no {name!r}; available: {', '.join(known)}")
     near = get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
-    raise SceneError(f"unknown material {name!r}: {hint}known are {', '.join(known)}")
+    raise SceneError(f"unknown material {name!r}: {hint}known: {', '.join(known)}")
 
 
 class Slab(NamedTuple):
@@ -233,7 +234,7 @@ class Slab(NamedTuple):
         if isinstance(material, Layered) and abs(material.thickness_m - thickness_m) > 1e-6:
             raise SceneError(
                 f"{material.name} of thickness {thickness_m:g} m: its layers are "
-                f"{material.thickness_m:g} m thick together"
+                f"{material.thickness_m:g} m thick in total"
             )
         return cls(material, float(thickness_m))
 

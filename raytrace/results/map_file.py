@@ -270,7 +270,7 @@ def _antenna(file: Checked) -> Antenna:
     if kind == Isotropic.__name__:
         return Isotropic(file.number(f"{_ANTENNA}_gain_db"))
     if kind != PatternTable.__name__:
-        raise Hdf5ContentError(f"attribute {_ANTENNA!r}: {kind!r} is no antenna of a map file")
+        raise Hdf5ContentError(f"attribute {_ANTENNA!r}: {kind!r} is not an antenna of a map file")
     pattern = file.within(_ANTENNA)
     return PatternTable(
         pattern.array("theta_deg", np.float64, ("n_theta",)),

@@ -11,7 +11,7 @@ from raytrace.kernels.beam_hits import Hits, hit_points, no_hits
 from raytrace.kernels.beams import ORDER, Tree, grow_tree
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.horizontal_edge_legs import (
-    HorizontalEdge,
+    HorizontalEdgeArrays,
     HorizontalEdgeBeams,
     ImagesIn,
     new_edge_workspace,
@@ -30,7 +30,7 @@ from raytrace.kernels.sums import Sums, new_sums
 from raytrace.kernels.unfolding import new_leg
 from raytrace.kernels.vertical_edge_legs import (
     LegsIn,
-    VerticalEdge,
+    VerticalEdgeArrays,
     bounds_of_legs,
     legs_to_edge,
 )
@@ -74,7 +74,7 @@ class _BeamClass(ABC, Generic[Beams]):
 
     @abstractmethod
     def _write_points(self, beams: Beams, record: Record, points: Floats, kinds: Int8s) -> None:
-        """Write points (n, most, 3) [m] and interactions (n, most - 2) of recorded paths."""
+        """Write points (n, k, 3) [m] and interactions (n, k - 2) of recorded paths."""
 
     def _beams(self) -> Beams:
         return self._grow() if self._kept is None else self._kept
@@ -112,8 +112,8 @@ class _BeamClass(ABC, Generic[Beams]):
 
     def _paths(self, beams: Beams, record: Record) -> Paths:
         n, config = len(record.gain), self._tracing.config
-        most = config.max_reflections + config.max_diffractions + config.max_transmissions
-        points, kinds = np.zeros((n, most + 2, 3)), np.zeros((n, most), np.int8)
+        n_max = config.max_reflections + config.max_diffractions + config.max_transmissions
+        points, kinds = np.zeros((n, n_max + 2, 3)), np.zeros((n, n_max), np.int8)
         self._write_points(beams, record, points, kinds)
         length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
         receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
@@ -153,9 +153,9 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
     def __init__(self, tracing: Tracing, edge: edges.VerticalEdge) -> None:
         super().__init__(tracing)
         self._cells, self._vertex = edge.cells, edge.vertex
-        self._edge = VerticalEdge(
+        self._edge = VerticalEdgeArrays(
             edge.x, edge.y, *_heights(edge, tracing.scene.height_m), edge.o_face_azimuth,
-            new_wedge(edge.wedge_n, edge.o_material, edge.n_material),
+            new_wedge(edge.wedge_n, edge.o_slab, edge.n_slab),
         )  # fmt: skip
 
     def _legs_in(self) -> LegsIn:
@@ -211,7 +211,7 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
     def __init__(self, tracing: Tracing, edge: edges.HorizontalEdge, side: int) -> None:
         super().__init__(tracing)
         self._near, self._far = edge.plan_edges[side], edge.plan_edges[1 - side]
-        self._edge = HorizontalEdge(
+        self._edge = HorizontalEdgeArrays(
             edge_frame(tracing.scene.view, self._near), edge.z, 1.0 if edge.wall_above else -1.0,
             new_wedge(2.0, edge.material, edge.material),
         )  # fmt: skip

@@ -102,7 +102,7 @@ def _geometry(
     heights, level = np.unique(receivers[:, 2], return_inverse=True)
     images = [image_heights(h, height, order) for h in heights]
     return TraceGeometry(
-        Building(scene.view, height, scene.floor_material, scene.ceiling_material),
+        Building(scene.view, height, scene.floor_slab, scene.ceiling_slab),
         np.array(position),
         image_heights(position[2], height, order),
         Receivers(

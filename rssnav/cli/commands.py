@@ -13,11 +13,11 @@ from typer.core import TyperGroup
 from typer.main import get_group
 
 from rssnav.cli.failures import (
-    COULD_NOT,
+    EXIT_FAILURE,
     INTERRUPTED,
-    NOTHING_HALF,
-    complain,
+    INTERRUPTED_TEXT,
     is_anticipated,
+    print_error,
     with_remedy,
 )
 from rssnav.cli.streams import tolerant_streams
@@ -133,10 +133,10 @@ class Commands(TyperGroup):
             with _printable_usage():
                 return super().invoke(ctx)
         except KeyboardInterrupt as interrupt:
-            complain(str(interrupt) or NOTHING_HALF)
+            print_error(str(interrupt) or INTERRUPTED_TEXT)
             raise typer.Exit(INTERRUPTED) from interrupt
         except Exception as error:
             if not is_anticipated(error):
                 raise
-            complain(with_remedy(error))
-            raise typer.Exit(COULD_NOT) from error
+            print_error(with_remedy(error))
+            raise typer.Exit(EXIT_FAILURE) from error

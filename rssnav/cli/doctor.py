@@ -15,7 +15,7 @@ from raytrace.threads import n_threads
 from raytrace.trace import TRACER_VERSION
 from rssnav import GridWorld, LocationAgent, train
 from rssnav.cli.console import note, print_json, print_pairs
-from rssnav.cli.failures import COULD_NOT, complain
+from rssnav.cli.failures import EXIT_FAILURE, print_error
 from rssnav.cli.options import Json, examples
 from rssnav.kernel_cache import CacheState, learning_cache, tracer_cache
 from rssnav.maps import make_map
@@ -57,9 +57,9 @@ def examine(as_json: Json = False) -> None:
     else:
         _print(summary, caches)
     for fault in faults:
-        complain(fault)
+        print_error(fault)
     if faults:
-        raise typer.Exit(COULD_NOT)
+        raise typer.Exit(EXIT_FAILURE)
 
 
 def _tracer_faults() -> list[str]:

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from rssnav.cli.console import note
-from rssnav.cli.failures import COULD_NOT, complain
+from rssnav.cli.failures import EXIT_FAILURE, print_error
 from rssnav.cli.options import Plan, examples
 
 PORT = 5006
@@ -69,7 +69,7 @@ def explore(
     except ModuleNotFoundError as error:
         if error.name not in ("panel", "bokeh"):
             raise
-        complain(MISSING)
-        raise typer.Exit(COULD_NOT) from error
+        print_error(MISSING)
+        raise typer.Exit(EXIT_FAILURE) from error
     settings = ServerSettings(port, address, tuple(allow_origin or ()), browser)
     serve(floorplans.load(plan), settings, lambda url: note(f"the explorer is at {url}"))

@@ -4,10 +4,12 @@ import sys
 
 from rssnav.messages import describe, printable
 
-COULD_NOT = 1
+EXIT_FAILURE = 1
 INTERRUPTED = 130
 
-NOTHING_HALF = "interrupted; files are written whole or not at all, so nothing is left half-done"
+INTERRUPTED_TEXT = (
+    "interrupted; files are written whole or not at all, so nothing is left half-done"
+)
 
 REMEDIES = {
     "make_map": "`rssnav map PLAN -o {path}`",
@@ -32,7 +34,7 @@ def is_anticipated(error: Exception) -> bool:
     return isinstance(error, anticipated) and not isinstance(error, BrokenPipeError)
 
 
-def complain(message: str) -> None:
+def print_error(message: str) -> None:
     """Write a line to standard error, prefixed with the program's name."""
     print(f"rssnav: {printable(message)}", file=sys.stderr)
 

@@ -11,7 +11,7 @@ import floorplans
 from raytrace import RadioMap
 from rssnav import TrainingResult
 from rssnav.cli.console import one_progress, print_json, print_pairs
-from rssnav.cli.failures import COULD_NOT, complain
+from rssnav.cli.failures import EXIT_FAILURE, print_error
 from rssnav.cli.options import Json, Plan, Style, check_suffix, examples
 from rssnav.maps import require_map_for
 
@@ -85,8 +85,8 @@ def fly(
                 progress=progress,
             )
     except MovieError as error:
-        complain(str(error))
-        raise typer.Exit(COULD_NOT) from error
+        print_error(str(error))
+        raise typer.Exit(EXIT_FAILURE) from error
     _print({"file": str(output), "flights": [_summary(flight) for flight in flights]}, as_json)
 
 

@@ -11,7 +11,7 @@ def _known_edition(edition: str | None) -> str | None:
 
     if edition is None or edition.upper() in MATERIAL_EDITIONS:
         return edition and edition.upper()
-    raise typer.BadParameter(f"{edition!r} is none of {', '.join(MATERIAL_EDITIONS)}.")
+    raise typer.BadParameter(f"{edition!r} is not one of {', '.join(MATERIAL_EDITIONS)}.")
 
 
 def _complete_plan(incomplete: str) -> list[str]:

@@ -25,7 +25,7 @@ from rssnav.cli.console import note, print_json, print_table, say
 from rssnav.cli.options import Json, Plan, check_suffix, examples
 from rssnav.cli.plan_summary import print_summary, summary_of
 from rssnav.messages import printable
-from rssnav.reachability import Reach, reaches, unreached
+from rssnav.reachability import Reach, reach_by_speed, unreached
 from rssnav.scenes import scene_of
 
 
@@ -101,7 +101,7 @@ def _is_usable(plan: UncheckedPlan) -> bool:
     try:
         checked = FloorPlan.of(plan)
         scene_of(checked)
-        reaches(checked)
+        reach_by_speed(checked)
     except (PlanError, SceneError, WorldError):
         return False
     return True
@@ -133,7 +133,7 @@ def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool)
     if not errors:
         checked = FloorPlan.of(file.plan)
         scene_of(checked)
-        flights = reaches(checked)
+        flights = reach_by_speed(checked)
         findings += [finding for reach in flights if (finding := unreached(reach)) is not None]
         summary |= summary_of(checked)
     if as_json:
@@ -148,7 +148,7 @@ def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool)
             _print_findings(findings)
     else:
         _print_flights(FloorPlan.of(file.plan), flights, findings)
-        say(f"\n{plan} is valid{_but(len(findings))}")
+        say(f"\n{plan} is valid{_warnings_text(len(findings))}")
     if errors:
         _fail(file, plan)
 
@@ -159,7 +159,7 @@ def _fail(file: PlanFile, origin: str) -> NoReturn:
     raise first.located(origin, place=file.place_in_file(first.place))
 
 
-def _but(n_warnings: int) -> str:
+def _warnings_text(n_warnings: int) -> str:
     if not n_warnings:
         return ""
     return f", but see {n_warnings} warning{'s' if n_warnings > 1 else ''} above"

@@ -169,7 +169,7 @@ def import_file(
         layers=_layers(layer),
     )
     if output.exists() and not force:
-        raise FileExistsError(17, "the file is there already; --force replaces it", str(output))
+        raise FileExistsError(17, "already exists; use --force to overwrite", str(output))
     imported = import_plan(file, options)
     with atomic_write(output) as beside:
         beside.write_text(imported.toml(), encoding="utf-8", newline="\n")

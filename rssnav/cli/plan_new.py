@@ -47,7 +47,7 @@ def new(
         raise typer.BadParameter(f"{error}.", param_hint="--size, --height") from error
     floorplans.loads(text, origin=str(output))
     if output.exists() and not force:
-        raise FileExistsError(17, "the file is there already; --force replaces it", str(output))
+        raise FileExistsError(17, "already exists; use --force to overwrite", str(output))
     with atomic_write(output) as beside:
         beside.write_text(text, encoding="utf-8", newline="\n")
     say(f"wrote {output}; see it with: rssnav plan show {output}")

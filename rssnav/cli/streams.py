@@ -6,7 +6,7 @@ import sys
 from collections.abc import Generator
 from contextlib import contextmanager
 
-from rssnav.cli.failures import COULD_NOT, complain
+from rssnav.cli.failures import EXIT_FAILURE, print_error
 from rssnav.messages import describe
 
 
@@ -36,8 +36,8 @@ def _write_out() -> None:
     except OSError as error:
         _drop_output()
         if not isinstance(error, BrokenPipeError):
-            complain(f"standard output: {describe(error)}")
-        raise SystemExit(COULD_NOT) from None
+            print_error(f"standard output: {describe(error)}")
+        raise SystemExit(EXIT_FAILURE) from None
 
 
 def _drop_output() -> None:

@@ -265,7 +265,7 @@ class _Job:
         try:
             found = TrainingResult.load(self._output)
         except ResultFileError as error:
-            raise ResultFileError(f"{error}; --force replaces it") from error
+            raise ResultFileError(f"{error}; use --force to overwrite") from error
         note(f"{self._output} holds {found.run_ids.size} of {found.schedule.runs} runs")
         return found
 
@@ -297,7 +297,7 @@ class _Job:
         except ValueError as error:
             if earlier is None:
                 raise
-            raise ResultFileError(f"{self._output}: {error}; --force replaces it") from error
+            raise ResultFileError(f"{self._output}: {error}; use --force to overwrite") from error
 
     def _checkpoint(self) -> Checkpoint | None:
         """Function that saves the finished runs while others are trained."""

@@ -66,7 +66,7 @@ STEPS, DIAGONAL_STEPS, TRUNCATED = range(3)
 _SAME_PATHS_TO_CONVERGE = 3
 
 
-@jit(inline="always")
+@jit(inline=True)
 def extended_hash(path_hash: np.uint64, action: Index) -> np.uint64:
     """Hash of a path with one more action.
 
@@ -76,13 +76,13 @@ def extended_hash(path_hash: np.uint64, action: Index) -> np.uint64:
     return (path_hash ^ (np.uint64(action) + _1)) * _HASH_FACTOR
 
 
-@jit(inline="always")
+@jit(inline=True)
 def decayed(rate: float, minimum: float, factor: float) -> float:
     """Epsilon or alpha after one decay (Algorithm 1: while not below its minimum)."""
     return rate * factor if rate >= minimum else rate
 
 
-@jit(inline="always")
+@jit(inline=True)
 def close_episode(
     counters: NDArray[np.int64],
     episodes: NDArray[np.int32],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 import numba
 
@@ -15,24 +15,22 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _SOURCES = Path(__file__).parent
 
 
-def jit(
-    *, inline: Literal["never", "always"] = "never", allocates: bool = False
-) -> Callable[[Function], Function]:
+def jit(*, inline: bool = False, allocates: bool = False) -> Callable[[Function], Function]:
     """Compile a loop or a part of one: cached, without the interpreter lock.
 
     Parameters
     ----------
     inline
-        "always" for the small parts of inner loops.
+        Whether it is always inlined, as the small parts of inner loops are.
     allocates
-        Whether it makes arrays. One that does not is spared the counting of references, which
-        otherwise takes most of the time of a loop that hands arrays in tuples to its parts.
+        Whether it creates arrays, which few loops here do, unlike the tracer's. Otherwise it does
+        without reference counting (see `raytrace.kernels.compiling.jit`).
     """
 
     def compiled(function: Function) -> Function:
         dispatcher: Any = numba.njit(  # pyright: ignore[reportCallIssue]
             nogil=True,
-            inline=inline,
+            inline="always" if inline else "never",
             _nrt=allocates,  # pyright: ignore[reportArgumentType]
         )(function)
         keep_compiled(dispatcher, _SOURCES)

@@ -31,7 +31,7 @@ class Model(NamedTuple):
     high: NDArray[np.float64]  # (4,) x, y [m], power at 1 m [dBm], exponent
     jitter: NDArray[np.float64]  # (4,) standard deviations added when resampled
     sigma_db: float  # of readings about the model
-    fresh_share: float  # of new particles, when resampled
+    fresh_fraction: float  # of new particles, when resampled
     found_m: float  # a reading that does not find the transmitter means it is not nearer than this
     steps_to_draw: int  # after which another position is drawn
 
@@ -52,7 +52,7 @@ class Chart(NamedTuple):
     queue: NDArray[np.int32]  # (S,) buffer for the search
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _unit(generator: NDArray[np.uint64]) -> float:
     return unit_from_high_bits(draw(generator))
 
@@ -116,7 +116,7 @@ def resample(belief: Belief, model: Model, generator: NDArray[np.uint64]) -> Non
             k += 1
             reached += belief.weights[k]
         particle = belief.resampled[drawn]
-        if _unit(generator) < model.fresh_share:
+        if _unit(generator) < model.fresh_fraction:
             _draw_new(particle, model, generator)
             continue
         for c in range(4):
@@ -164,7 +164,7 @@ def count_hops(moves: Moves, chart: Chart, target: int) -> None:
                 tail += 1
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _nearer(moves: Moves, hops: NDArray[np.int32], state: int) -> int:
     """State one step nearer to the target; at the target the same state."""
     for a in range(8):

@@ -37,7 +37,7 @@ class Greedy(NamedTuple):
     action: NDArray[np.uint8]  # (S,)
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _first_best(q: NDArray[np.float64], row: Index) -> tuple[float, Index]:
     """Largest of the eight values from ``row`` on, and the first action that attains it."""
     best, action = q[row], np.uint64(0)
@@ -49,7 +49,7 @@ def _first_best(q: NDArray[np.float64], row: Index) -> tuple[float, Index]:
     return best, action
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _updated_best(
     q: NDArray[np.float64], row: Index, changed: Index, best: float, first: Index
 ) -> tuple[float, Index]:

@@ -62,7 +62,7 @@ class KnownStates(NamedTuple):
     fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
 
 
-@jit(inline="always")
+@jit(inline=True)
 def reading_in(
     sensor: Sensor, known: KnownStates, generator: NDArray[np.uint64], cell: int
 ) -> float:
@@ -72,13 +72,13 @@ def reading_in(
     )
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _bin(sensor: Sensor, known: KnownStates, reading: float) -> int:
     position = int((reading - sensor.low_dbm) * (2.0 / sensor.threshold_db))
     return min(max(position, 0), known.state_of_bin.size - 1)
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _nearest_known(sensor: Sensor, known: KnownStates, reading: float) -> int:
     """Nearest known state within Th of a reading, at equal distance the older; -1 if none."""
     centre = _bin(sensor, known, reading)
@@ -94,7 +94,7 @@ def _nearest_known(sensor: Sensor, known: KnownStates, reading: float) -> int:
     return nearest
 
 
-@jit(inline="always")
+@jit(inline=True)
 def discrete_state_of(
     sensor: Sensor, known: KnownStates, counters: NDArray[np.int64], cell: int, reading: float
 ) -> int:
@@ -112,7 +112,7 @@ def discrete_state_of(
     return state
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _best(
     moves: Moves, all_actions: bool, q: NDArray[np.float64], state: int, cell: int
 ) -> tuple[float, int]:
@@ -126,7 +126,7 @@ def _best(
     return best, ties
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _greedy(moves: Moves, parameters: Parameters, run: Run, state: int, cell: int) -> int:
     """Greedy action in a cell; it may be blocked when the maximum runs over all actions."""
     q = run.q

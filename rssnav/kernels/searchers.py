@@ -34,7 +34,7 @@ class FlightLog(NamedTuple):
     generator: NDArray[np.uint64]  # (4,)
 
 
-@jit(inline="always")
+@jit(inline=True)
 def read(receiver: Receiver, generator: NDArray[np.uint64], state: int) -> float:
     """Reading in a state [dBm]."""
     return fluctuating(
@@ -46,13 +46,13 @@ def read(receiver: Receiver, generator: NDArray[np.uint64], state: int) -> float
     )
 
 
-@jit(inline="always")
+@jit(inline=True)
 def is_over(flight: FlightLog) -> bool:
     """Whether the time is up."""
     return flight.seconds[0] + 1 == flight.states.size
 
 
-@jit(inline="always")
+@jit(inline=True)
 def spend_second(flight: FlightLog, state: int) -> None:
     """Log the state after another second."""
     flight.seconds[0] += 1

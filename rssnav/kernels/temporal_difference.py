@@ -29,13 +29,13 @@ from rssnav.kernels.xoshiro import draw, index_from_low_bits, unit_from_high_bit
 Q_LEARNING, SARSA, DOUBLE_Q = range(3)
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _score(q: NDArray[np.float64], entry: int, rule: int) -> float:
     """Value by which the policy ranks an action."""
     return q[entry] + q[entry + q.size // 2] if rule == DOUBLE_Q else q[entry]
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _greedy(q: NDArray[np.float64], row: int, rule: int, ties: NDArray[np.uint64] | None) -> int:
     """First of the best actions or, with a generator for ties, any; it may be blocked."""
     best, attain, first = -np.inf, np.uint64(0), 0
@@ -55,7 +55,7 @@ def _greedy(q: NDArray[np.float64], row: int, rule: int, ties: NDArray[np.uint64
     return first
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _choose(
     moves: Moves,
     run: Run,
@@ -73,7 +73,7 @@ def _choose(
     return action
 
 
-@jit(inline="always")
+@jit(inline=True)
 def _first_best(q: NDArray[np.float64], row: int) -> int:
     """First of the eight entries from ``row`` on with the largest value."""
     best = row

@@ -26,7 +26,7 @@ _UNIT_32 = 2.0**-32
 _UNIT_53 = 2.0**-53
 
 
-@jit(inline="always")
+@jit(inline=True)
 def next_uint64(
     s0: np.uint64, s1: np.uint64, s2: np.uint64, s3: np.uint64
 ) -> tuple[np.uint64, np.uint64, np.uint64, np.uint64, np.uint64]:
@@ -43,7 +43,7 @@ def next_uint64(
     return bits, s0, s1, s2, s3
 
 
-@jit(inline="always")
+@jit(inline=True)
 def draw(generator: NDArray[np.uint64]) -> np.uint64:
     """Next 64 random bits of a generator kept in an array (4,), which advances."""
     bits, generator[0], generator[1], generator[2], generator[3] = next_uint64(
@@ -52,19 +52,19 @@ def draw(generator: NDArray[np.uint64]) -> np.uint64:
     return bits
 
 
-@jit(inline="always")
+@jit(inline=True)
 def unit_from_high_bits(bits: np.uint64) -> float:
     """Uniform number in [0, 1) from the upper 32 bits."""
     return np.float64(bits >> _32) * _UNIT_32
 
 
-@jit(inline="always")
+@jit(inline=True)
 def index_from_low_bits(bits: np.uint64, count: np.uint64) -> np.uint64:
     """Uniform index in 0..count-1 from the lower 32 bits (multiply-shift; bias < count / 2^32)."""
     return ((bits & _LOW_32) * count) >> _32
 
 
-@jit(inline="always")
+@jit(inline=True)
 def gaussian(bits_a: np.uint64, bits_b: np.uint64) -> float:
     """Standard normal number from two draws (Box-Muller), at most 8.6 in magnitude."""
     radius = math.sqrt(-2.0 * math.log((np.float64(bits_a >> _11) + 1.0) * _UNIT_53))

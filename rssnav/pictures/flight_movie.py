@@ -6,7 +6,7 @@ Pillow writes GIF; MP4 needs ffmpeg.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -35,6 +35,7 @@ from rssnav.pictures.style import (
     draw_flight,
     drawing,
 )
+from rssnav.progress import Progress
 from rssnav.result_file import ResultFileError
 from rssnav.results import TrainingResult, median_run
 
@@ -45,7 +46,6 @@ HOLD_S = 1.5
 
 Frame = NDArray[np.uint8]
 Numbers = NDArray[np.int32]
-Progress = Callable[[int, int], None]
 
 _DPI = 110
 _PALE = 0.75
@@ -344,6 +344,6 @@ def _check_plan(plan: FloorPlan, results: Sequence[TrainingResult]) -> None:
     for result in results:
         if result.world.plan_sha256 != plan.sha256:
             raise ResultFileError(
-                f"the training is of another plan ({result.world.plan_name!r}) than "
+                f"the training is for a different plan ({result.world.plan_name!r}) than "
                 f"{plan.name!r}, or of an earlier version of it; train again"
             )

@@ -31,6 +31,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from atomicfiles import atomic_write
+from floorplans.pictures.plan_view import PAGE_IN as PAGE_IN
 
 if TYPE_CHECKING:
     from floorplans import FloorPlan
@@ -38,9 +39,6 @@ if TYPE_CHECKING:
 
 COLUMN_IN = 3.5
 """Width of one column [inch]."""
-
-PAGE_IN = 7.16
-"""Width of both columns [inch]."""
 
 DPI = 300
 
@@ -136,7 +134,7 @@ def check_style(style: str) -> None:
             return
     except OSError as error:
         raise ValueError(
-            f"{style!r} is no matplotlib style; give the path of a .mplstyle file, or one of "
+            f"{style!r} is not a matplotlib style; give the path of a .mplstyle file, or one of "
             f"{', '.join(name for name in available if not name.startswith('_'))}"
         ) from error
 

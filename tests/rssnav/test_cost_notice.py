@@ -17,7 +17,7 @@ def test_a_quick_map_is_not_announced() -> None:
 
 def test_a_long_map_is_announced_before_it_is_traced(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cost_notice, "LONG_S", 0.0)
-    monkeypatch.setattr(cost_notice, "MOST_QUICK_WORK", 0.0)
+    monkeypatch.setattr(cost_notice, "MAX_SILENT_WORK", 0.0)
     heard: list[str] = []
     progress: list[int] = []
 

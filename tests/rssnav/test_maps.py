@@ -73,11 +73,11 @@ def test_current_map_is_not_traced_again(plan, made) -> None:
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
-        ({"config": replace(QUICK, max_reflections=0)}, "with another trace configuration"),
-        ({"cell_size_m": 0.5}, "on another grid"),
-        ({"height_m": 1.9}, "on another grid"),
-        ({"power_dbm": 20.0}, "for another transmitter"),
-        ({"frequency_hz": 5e9}, "for another transmitter"),
+        ({"config": replace(QUICK, max_reflections=0)}, "with a different trace configuration"),
+        ({"cell_size_m": 0.5}, "on a different grid"),
+        ({"height_m": 1.9}, "on a different grid"),
+        ({"power_dbm": 20.0}, "for a different transmitter"),
+        ({"frequency_hz": 5e9}, "for a different transmitter"),
     ],
 )
 def test_changed_request_makes_the_map_again(plan, made, options, reason) -> None:
@@ -95,7 +95,7 @@ def test_changed_plan_makes_the_map_again_but_a_comment_does_not(made) -> None:
     assert watch.parts == []
     watch.make(floorplans.loads(edited("thickness_m = 0.1", "thickness_m = 0.15")), made)
     assert watch.parts != []
-    assert "made for another plan" in watch.notices[-1]
+    assert "made for a different plan" in watch.notices[-1]
 
 
 @pytest.mark.parametrize("key", ["material_edition", "tracer_version"])
@@ -105,7 +105,7 @@ def test_map_of_another_tracer_is_made_again(plan, made, key) -> None:
     watch = Watch()
     watch.make(plan, made)
     assert watch.notices == [
-        f"{made} was made with another {key.replace('_', ' ')}; computing it again"
+        f"{made} was made with a different {key.replace('_', ' ')}; computing it again"
     ]
     assert RadioMap.load(made).provenance[key] != "earlier"
 
@@ -115,7 +115,7 @@ def test_map_of_another_format_version_is_made_again(plan, made) -> None:
         file.attrs["format_version"] = 0
     watch = Watch()
     watch.make(plan, made)
-    assert watch.notices == [f"{made} is damaged or of another version; computing it again"]
+    assert watch.notices == [f"{made} is damaged or of a different version; computing it again"]
     assert RadioMap.load(made).plan_sha256 == plan.sha256
 
 
@@ -124,7 +124,7 @@ def test_truncated_map_is_made_again(plan, made, length) -> None:
     made.write_bytes(made.read_bytes()[:length])
     watch = Watch()
     watch.make(plan, made)
-    assert watch.notices == [f"{made} is damaged or of another version; computing it again"]
+    assert watch.notices == [f"{made} is damaged or of a different version; computing it again"]
     assert RadioMap.load(made).plan_sha256 == plan.sha256
 
 
@@ -147,7 +147,7 @@ def test_file_that_is_no_map_is_replaced_only_by_force(plan, tmp_path, write) ->
     path, watch = tmp_path / "data.h5", Watch()
     write(path)
     before = path.read_bytes()
-    with pytest.raises(MapFileError, match=r"data\.h5: there is a file that is not .*force=True"):
+    with pytest.raises(MapFileError, match=r"data\.h5: exists but is not .*force=True"):
         watch.make(plan, path)
     assert path.read_bytes() == before
     assert watch.parts == []
@@ -156,7 +156,7 @@ def test_file_that_is_no_map_is_replaced_only_by_force(plan, tmp_path, write) ->
 
 
 def test_folder_in_the_place_of_a_map_is_left_alone(plan, tmp_path) -> None:
-    with pytest.raises(MapFileError, match="left alone"):
+    with pytest.raises(MapFileError, match="not overwritten"):
         make_map(plan, tmp_path, config=QUICK)
 
 
@@ -204,7 +204,7 @@ def test_map_of_another_plan_is_refused(plan, made) -> None:
     radio_map = RadioMap.load(made)
     require_map_for(plan, radio_map)
     other = replace(plan, height_m=3.0, name="other room")
-    with pytest.raises(MapFileError, match=r"room\.h5: .*another plan.*'other room'.*compute it"):
+    with pytest.raises(MapFileError, match=r"room\.h5: .*different plan.*'other room'.*compute it"):
         require_map_for(other, radio_map, made)
     unmarked = radio_map.with_plan("", "")
     with pytest.raises(MapFileError, match="plan_sha256 = none"):

@@ -117,7 +117,7 @@ def model():
         high=np.array([10.0, 8.0, -10.0, 5.0]),
         jitter=np.zeros(4),
         sigma_db=6.0,
-        fresh_share=0.0,
+        fresh_fraction=0.0,
         found_m=2.0,
         steps_to_draw=10,
     )
@@ -186,7 +186,7 @@ def test_the_filter_finds_the_source_where_its_model_holds():
         (lambda: RssAscent(escape_steps=-1), "escape_steps: -1 must be at least 0"),
         (lambda: ParticleFilter(particles=1), "particles: 1 must be at least 2"),
         (lambda: ParticleFilter(exponent=(3.0, 2.0)), "exponent: .* lower and a higher"),
-        (lambda: ParticleFilter(fresh_share=1.0), "fresh_share: 1.0 must lie in"),
+        (lambda: ParticleFilter(fresh_fraction=1.0), "fresh_fraction: 1.0 must lie in"),
     ],
 )
 def test_parameters_out_of_range_are_refused(make, message):

@@ -105,7 +105,7 @@ def test_a_map_that_names_no_plan_is_taken_at_its_word(room):
 
 
 def test_a_map_of_another_plan_is_refused(room):
-    with pytest.raises(WorldError, match=r"another plan than 'small'.*make the map again"):
+    with pytest.raises(WorldError, match=r"a different plan than 'small'.*compute the map again"):
         world_of(room, plan_sha256="6" * 64)
 
 

@@ -111,7 +111,7 @@ def _check_file(path: Path) -> None:
     size = path.stat().st_size
     if size > MAX_BYTES:
         raise PlanError(
-            f"the file has {size / 1e6:.0f} MB, more than {MAX_BYTES / 1e6:.0f} MB; {_LESS}"
+            f"the file is {size / 1e6:.0f} MB, more than {MAX_BYTES / 1e6:.0f} MB; {_LESS}"
         )
     records = sum(1 for _ in _RECORD.finditer(path.read_bytes()))
     if records > MAX_RECORDS:

@@ -10,14 +10,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
-from itertools import product
 from math import isfinite
 from typing import Any, Literal, cast, get_args
 
-from floorplans.errors import PlanError, unknown_name
 from floorplans.importers.draft import ImportOptions
-from floorplans.importers.layer_names import meaning_of
+from floorplans.importers.layer_names import meaning_in, meaning_of
 from floorplans.materials import MATERIALS
 
 Kind = Literal["wall", "door", "window", "passage", "room", "outline", "level", "ignore"]
@@ -78,9 +75,10 @@ def classify(feature: Json, options: ImportOptions) -> FeatureClass:
     words = [text for key in KIND_KEYS for text in _texts(properties.get(key))]
     words = [*_texts(feature.get("feature_type")), *words, *_osm_words(properties)]
     label = words[0] if words else "(no kind)"
-    for word, (pattern, target) in product(words, options.layers.items()):
-        if fnmatchcase(word.casefold(), pattern.casefold()):
-            kind, material = parse_target(target)
+    for word in words:
+        chosen = meaning_in(options.layers, word, KINDS)
+        if chosen is not None:
+            kind, material = chosen
             return FeatureClass(kind, word, material)
     material = _material(properties)
     if words and words[0] in ("unit", "fixture"):
@@ -90,19 +88,6 @@ def classify(feature: Json, options: ImportOptions) -> FeatureClass:
             material = material or meaning_of(word).material
             return FeatureClass(kind, word, material, word.lower() in OPEN_UNITS)
     return FeatureClass(None, label)
-
-
-def parse_target(target: str) -> tuple[Kind, str | None]:
-    """Parse KIND or KIND:MATERIAL; raise `PlanError` if unknown."""
-    name, _, material = target.partition(":")
-    for kind in KINDS:
-        if kind == name:
-            break
-    else:
-        raise PlanError(unknown_name("kind", name, KINDS), ("layers",), target)
-    if material and material not in MATERIALS:
-        raise PlanError(unknown_name("material", material, MATERIALS), ("layers",), target)
-    return kind, material or None
 
 
 def levels_of(feature: Json) -> frozenset[str]:

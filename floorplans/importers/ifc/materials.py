@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fnmatch import fnmatchcase
 
 from floorplans.importers.ifc.curves import Entity
-from floorplans.importers.layer_names import material_named, parse_meaning
+from floorplans.importers.layer_names import KINDS, material_named, meaning_in
 
 
 def dominant_material(
@@ -66,7 +65,7 @@ def _parts(material: Entity) -> list[Entity]:
 def _known(material: Entity | None, layers: Mapping[str, str]) -> str | None:
     if material is None or not material.Name:
         return None
-    for pattern, meaning in layers.items():
-        if fnmatchcase(material.Name.casefold(), pattern.casefold()):
-            return parse_meaning(meaning, pattern).material
+    chosen = meaning_in(layers, material.Name, KINDS)
+    if chosen is not None:
+        return chosen[1]
     return material_named(material.Name) or material_named(getattr(material, "Category", "") or "")

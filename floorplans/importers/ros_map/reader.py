@@ -89,14 +89,14 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
 
 
 def _check_extent(occupied: Mask, pixel_m: float) -> None:
-    """Reject a scale at which the drawing is no building."""
+    """Reject a scale at which the drawing is too large or too small for a building."""
     rows, columns = np.nonzero(occupied)
     width_m, depth_m = float(np.ptp(columns) + 1) * pixel_m, float(np.ptp(rows) + 1) * pixel_m
     low_m, high_m = BUILDING_M
     if not low_m <= max(width_m, depth_m) <= high_m:
         raise PlanError(
             f"with pixels of {pixel_m:g} m, the walls cover {width_m:.3g} m x {depth_m:.3g} m, "
-            "which is no building; give the side of a pixel, such as 0.05 m",
+            "too large or too small for a building; give the side of a pixel, such as 0.05 m",
             ("resolution",),
             pixel_m,
             remedy="scale_m",

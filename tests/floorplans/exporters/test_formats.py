@@ -26,7 +26,7 @@ def test_a_format_can_be_named(tmp_path) -> None:
 
 def test_unknown_formats_say_which_are_known(tmp_path) -> None:
     plan = floorplans.load("flat")
-    with pytest.raises(PlanError, match=r"'.doc'; known are .geojson, .json, .dxf"):
+    with pytest.raises(PlanError, match=r"'.doc'; known: .geojson, .json, .dxf"):
         export(plan, tmp_path / "plan.doc")
     with pytest.raises(PlanError, match='did you mean "geojson"'):
         export(plan, tmp_path / "plan.txt", "geojsn")

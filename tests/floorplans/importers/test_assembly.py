@@ -342,7 +342,7 @@ def test_the_report_states_layers_assumptions_and_changes():
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("plan.dwg", b"AC1032", "cannot be imported; known are .dxf"),
+        ("plan.dwg", b"AC1032", "cannot be imported; known: .dxf"),
         ("plan", b"x", "no ending"),
         ("plan.dxf", b"", "the file is empty"),
         ("plan.dxf", b"ISO-10303-21;", "it looks like a IFC model"),

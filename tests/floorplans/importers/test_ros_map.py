@@ -175,7 +175,7 @@ def test_pictures_otherwise_are_rejected(image: str, tmp_path) -> None:
         ("image: {image}", "image: {{", "not a map's YAML"),
         ("image: {image}", "- 1", "not begin like"),
         ("image: {image}", "image: !!python/object/apply:os.getcwd []", "not a map's YAML"),
-        ("resolution: 0.05", "resolution: 5", "no building.*side of a pixel"),
+        ("resolution: 0.05", "resolution: 5", "for a building.*side of a pixel"),
     ],
 )
 def test_yaml_files_that_are_wrong_say_where(old: str, new: str, message: str, tmp_path) -> None:
@@ -211,7 +211,7 @@ BAD_PICTURES = {
     "empty": (b"", "a.pgm", "empty"),
     "bomb": (png_of(30_000, 30_000), "a.png", "pixels|too large"),
     "white": (b"P5 20 20 255\n" + bytes([255]) * 400, "a.pgm", "no pixel is occupied"),
-    "a dot": (b"P5 3 3 255\n" + bytes([255] * 4 + [0] + [255] * 4), "a.pgm", "is no building"),
+    "a dot": (b"P5 3 3 255\n" + bytes([255] * 4 + [0] + [255] * 4), "a.pgm", "for a building"),
     "dots": (b"P5 100 9 255\n" + (bytes(6) + bytes([255] * 88) + bytes(6)) * 9, "a.pgm", "no line"),
 }
 

@@ -12,6 +12,7 @@ from raytrace.kernels.lanes import (
     WIDTH,
     Floats,
     absolute,
+    all_false,
     all_of,
     any_of,
     complex_of,
@@ -23,7 +24,6 @@ from raytrace.kernels.lanes import (
     load,
     maximum,
     minimum,
-    none_chosen,
     real_of,
     sqrt,
     store,
@@ -51,11 +51,11 @@ def choices(a: Floats, b: Floats, out: Floats) -> None:
     x, y = load(a), load(b)
     store(out[0], where((x < y) & (y > 0.0), x, -1.0))
     store(out[1], where((x >= y) | ~(y <= 0.5), lanes_of(2.0), y))
-    store(out[2], where((x == y) | none_chosen(), lanes_of(1.0), 0.0))
+    store(out[2], where((x == y) | all_false(), lanes_of(1.0), 0.0))
     store(out[3], where(x != x, lanes_of(1.0), 0.0))
     out[4, 0] = 1.0 if any_of(x < y) else 0.0
     out[4, 1] = 1.0 if all_of(x < y) else 0.0
-    out[4, 2] = 1.0 if any_of(none_chosen()) else 0.0
+    out[4, 2] = 1.0 if any_of(all_false()) else 0.0
     out[4, 3] = 1.0 if all_of(x == x) else 0.0
     for k in range(WIDTH - 4):
         out[4, 4 + k] = lane(x, k)

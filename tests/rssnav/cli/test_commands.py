@@ -228,7 +228,7 @@ def test_finished_training_is_not_repeated(room, tmp_path) -> None:
     assert kept.read_bytes() == before
     other = run(*arguments, "--seed", 1)
     assert other.exit_code == 1
-    assert f"{kept}: the earlier result was trained with another schedule" in other.stderr
+    assert f"{kept}: the earlier result was trained with a different schedule" in other.stderr
     done(*arguments, "--seed", 1, "--force")
     assert TrainingResult.load(kept).schedule.seed == 1
 

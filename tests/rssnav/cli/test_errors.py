@@ -162,7 +162,7 @@ def test_map_of_another_version(made, tmp_path) -> None:
 def test_map_of_another_plan(made, tmp_path) -> None:
     other = room_file(tmp_path, edited("height_m = 3\n", "height_m = 3.1\n"))
     line = fault("train", other, "--map", made[1])
-    assert f"{made[1]}: the map was made for another plan: plan_sha256 = " in line
+    assert f"{made[1]}: the map was made for a different plan: plan_sha256 = " in line
     assert f"`rssnav map PLAN -o {made[1]}`" in line
 
 
@@ -175,7 +175,7 @@ def test_map_does_not_replace_what_is_no_map(made, tmp_path) -> None:
     letter = tmp_path / "letter.h5"
     letter.write_text("Dear all")
     line = fault("map", made[0], "-o", letter, *QUICK)
-    assert f"{letter}: there is a file that is not a radio map" in line
+    assert f"{letter}: exists but is not a radio map" in line
     assert "--force" in line
     assert letter.read_text() == "Dear all"
     done("map", made[0], "-o", letter, "--force", *QUICK)
@@ -195,7 +195,7 @@ def test_damaged_training_result_is_not_replaced(made, tmp_path) -> None:
     result.write_text("no result")
     line = fault("train", plan, "--map", target, "--agent", "location", "-o", result)
     assert line.startswith(f"rssnav: {result}: ")
-    assert "--force replaces it" in line
+    assert "use --force to overwrite" in line
     assert result.read_text() == "no result"
 
 

@@ -9,7 +9,7 @@ import pytest
 from cli_plans import ROOM, done, edited, fault, room_file, run
 
 import floorplans
-from rssnav.reachability import reaches, unreached
+from rssnav.reachability import reach_by_speed, unreached
 
 CLOSET = "[[4, 0], [4, 2], [6, 2]]"
 PARTITION = "points = [[3, 0], [3, 4]]"
@@ -22,7 +22,7 @@ def test_new_plan_passes_the_check_and_is_not_overwritten(tmp_path) -> None:
     assert floorplans.load(target).bounds == (0.0, 0.0, 40.0, 25.0)
     assert done("plan", "check", target).endswith("my.toml is valid\n")
     before = target.read_text()
-    assert "--force replaces it" in fault("plan", "new", "-o", target)
+    assert "use --force to overwrite" in fault("plan", "new", "-o", target)
     assert target.read_text() == before
     done("plan", "new", "--size", "7 x 6.5", "-o", target, "--force")
     assert floorplans.load(target).bounds == (0.0, 0.0, 7.0, 6.5)
@@ -98,7 +98,7 @@ def test_fix_of_a_builtin_plan_and_output_without_fix_are_wrong_usage(tmp_path) 
 def test_cells_behind_a_shut_door_are_told(tmp_path) -> None:
     shut = f'{ROOM}\n[[walls]]\npoints = {CLOSET}\nmaterial = "brick"\nthickness_m = 0.1\n'
     plan = floorplans.load(room_file(tmp_path, shut))
-    one, two, _ = reaches(plan)
+    one, two, _ = reach_by_speed(plan)
     assert sorted(map(tuple, one.missed.tolist())) == [
         (x, y) for x in (4.5, 5.5) for y in (0.5, 1.5)
     ]
@@ -112,8 +112,8 @@ def test_cells_behind_a_shut_door_are_told(tmp_path) -> None:
 
 def test_every_cell_of_an_open_hall_is_reached() -> None:
     hall = floorplans.load("scenario2")
-    assert [len(reach.missed) for reach in reaches(hall)[:1]] == [0]
-    assert unreached(reaches(hall)[0]) is None
+    assert [len(reach.missed) for reach in reach_by_speed(hall)[:1]] == [0]
+    assert unreached(reach_by_speed(hall)[0]) is None
 
 
 @pytest.mark.parametrize("suffix", ["html", "glb"])

@@ -77,7 +77,7 @@ def test_json_tells_everything(drawing: Path, tmp_path: Path):
 def test_a_file_that_is_there_is_replaced_only_by_force(drawing: Path, tmp_path: Path):
     output = tmp_path / "hall.toml"
     output.write_text("mine")
-    assert "--force replaces it" in fault("plan", "import", drawing, "-o", output)
+    assert "use --force to overwrite" in fault("plan", "import", drawing, "-o", output)
     assert output.read_text() == "mine"
     done("plan", "import", drawing, "-o", output, "--force")
     assert output.read_text() != "mine"
@@ -89,7 +89,7 @@ def test_a_file_that_is_there_is_replaced_only_by_force(drawing: Path, tmp_path:
         ("plan.dxf", b"\x89PNG\r\n\x1a\n", "does not begin like a DXF drawing"),
         ("plan.dxf", b"", "the file is empty"),
         ("plan.dxf", b"  0\nSECTION\n  2\nnonsense", "plan.dxf: "),
-        ("plan.dwg", b"AC1032", "known are .dxf"),
+        ("plan.dwg", b"AC1032", "known: .dxf"),
         ("plan.geojson", b"  0\nSECTION", "does not begin like a GeoJSON"),
     ],
 )

@@ -89,7 +89,7 @@ def test_formats_that_cannot_be_written_are_refused(room, radio_map, trained, tm
 
 
 def test_a_training_of_another_plan_is_refused(room, radio_map, trained, tmp_path):
-    with pytest.raises(ResultFileError, match="is of another plan"):
+    with pytest.raises(ResultFileError, match="is for a different plan"):
         save_flight_movie(floorplans.load("flat"), radio_map, trained, tmp_path / "flight.gif")
 
 
