@@ -14,10 +14,11 @@ from pathlib import Path
 from shapely.geometry import Polygon
 
 from atomicfiles import atomic_write
+from floorplans.checks.materials import check_materials
 from floorplans.checks.walls import check_openings, opening_kind
 from floorplans.errors import Place, PlanError, format_place
 from floorplans.georeference import GeoOrigin
-from floorplans.materials import Own, by_name, check_materials
+from floorplans.materials import Own, by_name
 from floorplans.plan import FloorPlan
 from floorplans.toml.materials import read_materials
 from floorplans.toml.table import Table, as_points

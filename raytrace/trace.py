@@ -11,7 +11,7 @@ import numpy as np
 from raytrace.arrays import Floats
 from raytrace.config import TraceConfig
 from raytrace.grid import Grid
-from raytrace.radio.antennas import Antenna
+from raytrace.radio.antennas import Antenna, HalfWaveDipole
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.layers import layers_of
 from raytrace.results.paths import Paths
@@ -118,6 +118,7 @@ def compute_radio_map(
         transmitter=transmitter,
         config=config,
         provenance=_provenance(scene, time.perf_counter() - started),
+        receive_antenna=receive_antenna or HalfWaveDipole(),
     )
 
 

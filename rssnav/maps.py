@@ -9,6 +9,7 @@ import floorplans
 from floorplans import FloorPlan
 from raytrace import (
     Grid,
+    HalfWaveDipole,
     MapFileError,
     RadioMap,
     Scene,
@@ -64,6 +65,7 @@ class MapRequest:
             ("for a different plan", radio_map.plan_sha256 == self.plan.sha256),
             ("with a different trace configuration", radio_map.config == self.config),
             ("for a different transmitter", radio_map.transmitter == self.transmitter),
+            ("for a different receive antenna", radio_map.receive_antenna == HalfWaveDipole()),
             ("on a different grid", radio_map.grid.same_as(self.grid)),
             *(
                 (f"with a different {key.replace('_', ' ')}", found.get(key) == value)

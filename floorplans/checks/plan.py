@@ -14,10 +14,10 @@ from shapely.geometry import LineString, MultiLineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.strtree import STRtree
 
+from floorplans.checks.materials import check_materials, check_slab
 from floorplans.checks.walls import check_wall
 from floorplans.errors import Place, PlanError
 from floorplans.georeference import check_origin
-from floorplans.materials import check_materials, check_slab
 from floorplans.unchecked import UncheckedPlan
 from floorplans.values import (
     COORDINATE,

@@ -3,8 +3,9 @@
 from itertools import combinations
 from typing import get_args
 
+from floorplans.checks.materials import check_slab
 from floorplans.errors import Place, PlanError, unknown_name
-from floorplans.materials import Own, check_slab
+from floorplans.materials import Own
 from floorplans.values import (
     COORDINATE,
     LENGTH,

@@ -18,7 +18,7 @@ from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 from shapely import get_coordinates
 
-from floorplans.pictures.axonometric import draw_plan_3d
+from atomicfiles import atomic_write
 from floorplans.pictures.legend import (
     INK,
     is_low,
@@ -29,8 +29,6 @@ from floorplans.pictures.legend import (
 )
 from floorplans.pictures.symbols import DoorSwings, WallStrips, strip, strip_edges
 from floorplans.plan import FloorPlan
-
-__all__ = ["draw_plan", "draw_plan_3d", "save_plan_picture"]
 
 MIN_WIDTH = 0.004
 """Least drawn width of walls, as a fraction of the plan's longer side."""
@@ -67,7 +65,7 @@ def draw_plan(plan: FloorPlan, ax: Axes) -> None:
 
 
 def save_plan_picture(plan: FloorPlan, path: str | Path, *, width_in: float = PAGE_IN) -> None:
-    """Draw a plan from above into a file.
+    """Draw a plan from above into a file, which is written whole or not at all.
 
     Parameters
     ----------
@@ -83,7 +81,8 @@ def save_plan_picture(plan: FloorPlan, path: str | Path, *, width_in: float = PA
     scale = (width_in - _LABELS_IN) / max(width, 1.2 * height)
     figure = Figure(figsize=(width * scale + _LABELS_IN, height * scale + _LABELS_IN))
     draw_plan(plan, figure.add_axes((0.0, 0.0, 1.0, 1.0)))
-    figure.savefig(path, dpi=300, bbox_inches="tight", pad_inches=0.03)
+    with atomic_write(path) as beside:
+        figure.savefig(beside, dpi=300, bbox_inches="tight", pad_inches=0.03)
 
 
 def _draw_floor(plan: FloorPlan, ax: Axes) -> None:

@@ -27,6 +27,7 @@ from trimesh.viewer.notebook import scene_to_html
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
+from atomicfiles import atomic_write
 from floorplans.mesh import Triangles, mesh_of, slab_triangles
 from floorplans.pictures.legend import SOURCE, START
 from floorplans.plan import FloorPlan
@@ -220,7 +221,7 @@ def _key(scene: trimesh.Scene, title: str) -> str:
 def save_scene(
     scene: trimesh.Scene, path: str | Path, title: str | None = None, bar: ColourBar | None = None
 ) -> None:
-    """Write a scene to a file.
+    """Write a scene to a file, whole or not at all.
 
     Parameters
     ----------
@@ -239,11 +240,13 @@ def save_scene(
     """
     path = Path(path)
     if path.suffix.lower() == ".glb":
-        path.write_bytes(export_glb(scene))
+        content = export_glb(scene)
     elif path.suffix.lower() == ".html":
-        path.write_text(scene_html(scene, title or path.stem, bar), encoding="utf-8", newline="\n")
+        content = scene_html(scene, title or path.stem, bar).encode()
     else:
         raise ValueError(f"{path}: expected a name that ends in .glb or .html")
+    with atomic_write(path) as beside:
+        beside.write_bytes(content)
 
 
 def _material(name: str, rgba: NDArray[np.float64]) -> PBRMaterial:

@@ -12,6 +12,7 @@ from raytrace.arrays import Floats, Ints
 from raytrace.config import TraceConfig
 from raytrace.extras import needs_extra
 from raytrace.grid import Grid
+from raytrace.radio.antennas import Antenna, HalfWaveDipole
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.layers import LAYERS
 from raytrace.results.map_file import attributes_of, read_map_file, write_map_file
@@ -52,6 +53,8 @@ class RadioMap:
     left_out_db
         (n_y, n_x) bound on the power of paths that a limit left out, over the RSS [dB]; -inf where
         nothing was left out.
+    receive_antenna
+        The receivers' antenna.
     """
 
     rss_dbm: Floats
@@ -69,6 +72,7 @@ class RadioMap:
     angular_spread: Floats | None = None
     k_factor_db: Floats | None = None
     left_out_db: Floats | None = None
+    receive_antenna: Antenna = field(default_factory=HalfWaveDipole)
 
     @property
     def layers(self) -> dict[str, NDArray[Any]]:

@@ -117,24 +117,25 @@ def _draw(
     from floorplans.pictures.viewer_3d import plan_scene, save_scene
     from rssnav.pictures.style import chosen_style, drawing
 
-    with atomic_write(output) as beside, chosen_style(style), drawing():
+    with chosen_style(style), drawing():
         if output.suffix.lower() in SOLID_SUFFIXES:
-            save_scene(plan_scene(plan), beside, plan.name)
+            save_scene(plan_scene(plan), output, plan.name)
         elif view == "3d":
-            _draw_walls_in_3d(plan, beside)
+            _draw_walls_in_3d(plan, output)
         else:
-            save_plan_picture(plan, beside)
+            save_plan_picture(plan, output)
 
 
 def _draw_walls_in_3d(plan: FloorPlan, path: Path) -> None:
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d import Axes3D
 
-    from floorplans.pictures.plan_view import draw_plan_3d
+    from floorplans.pictures.axonometric import draw_plan_3d
     from rssnav.pictures.style import DPI, PAGE_IN
 
     figure = Figure(figsize=(PAGE_IN, 4.8))
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
     assert isinstance(ax, Axes3D)
     draw_plan_3d(plan, ax)
-    figure.savefig(path, dpi=DPI, bbox_inches="tight")
+    with atomic_write(path) as beside:
+        figure.savefig(beside, dpi=DPI, bbox_inches="tight")

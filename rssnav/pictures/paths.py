@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
-from atomicfiles import atomic_write
 from floorplans import FloorPlan
 from floorplans.pictures.viewer_3d import ColourBar, add_lines, add_points, plan_scene, save_scene
 from raytrace import Paths
@@ -151,5 +150,4 @@ def _save_scene(
         [*colours(np.linspace(0.0, 1.0, 9))],
         f"{scale.vmin:.1f}", f"{scale.vmax:.1f}", POWER_LABEL,
     )  # fmt: skip
-    with atomic_write(path) as beside:
-        save_scene(scene, beside, title, bar)
+    save_scene(scene, path, title, bar)

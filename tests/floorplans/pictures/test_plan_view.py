@@ -12,7 +12,8 @@ from small_plans import box
 
 import floorplans
 from floorplans import MATERIAL_COLOURS, FloorPlan, Opening, Wall
-from floorplans.pictures.plan_view import draw_plan, draw_plan_3d, save_plan_picture
+from floorplans.pictures.axonometric import draw_plan_3d
+from floorplans.pictures.plan_view import draw_plan, save_plan_picture
 
 
 def drawn(plan: FloorPlan) -> Axes:

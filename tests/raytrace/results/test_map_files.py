@@ -145,8 +145,28 @@ def test_data_set_is_the_file_as_xarray_reads_it(saved: Path) -> None:
 
 def test_a_file_of_before_the_optional_layers_and_axes_is_read(saved: Path) -> None:
     with h5py.File(saved, "r+") as file:
+        for name in [key for key in file.attrs if key.startswith("receive_antenna")]:
+            del file.attrs[name]
         del file.attrs["transmit_antenna_axis"]
-    assert RadioMap.load(saved).transmitter == small_map().transmitter
+    read = RadioMap.load(saved)
+    assert read.transmitter == small_map().transmitter
+    assert read.receive_antenna == HalfWaveDipole()
+
+
+@pytest.mark.parametrize(
+    "antenna",
+    [
+        Isotropic(3.0),
+        HalfWaveDipole(2.15, (1.0, 0.0, 0.0)),
+        PatternTable.of_gain([0.0, 90.0, 180.0], [0.0, 180.0, 360.0], np.eye(3)),
+    ],
+    ids=lambda antenna: type(antenna).__name__,
+)
+def test_the_receive_antenna_comes_back(antenna: Antenna, tmp_path: Path) -> None:
+    replace(small_map(), receive_antenna=antenna).save(tmp_path / "map.h5")
+    read = RadioMap.load(tmp_path / "map.h5")
+    assert read.receive_antenna == antenna
+    assert read.transmitter == small_map().transmitter
 
 
 @pytest.mark.parametrize("fraction", [0.0, 0.01, 0.2, 0.5, 0.9, 0.98])

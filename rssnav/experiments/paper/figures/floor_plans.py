@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 
-from floorplans.pictures.plan_view import draw_plan_3d
+from floorplans.pictures.axonometric import draw_plan_3d
 from rssnav.experiments.paper.data import PaperData
 from rssnav.experiments.paper.figures.paper_figure import PaperFigure
 from rssnav.pictures.style import PAGE_IN, styled

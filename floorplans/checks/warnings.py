@@ -1,0 +1,209 @@
+"""Warnings about a plan: walls that almost meet, slivers, duplicate walls, rooms without a door."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import dist
+from typing import Literal
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, MultiLineString, Point, Polygon
+
+from floorplans.errors import format_place
+from floorplans.unchecked import PlanFile, UncheckedPlan
+from floorplans.walls import TOLERANCE_M, Wall, centre_lines
+from floorplans.walls import Point as PlanPoint
+
+GAP_M = 0.05
+"""A free wall end this near to another wall's body should probably meet it [m]."""
+
+SLIVER_M = 0.05
+"""Walls shorter than this, and regions narrower, are slivers [m]."""
+
+ROOM_WALL_M = 1.5
+"""Walls at least this high separate rooms [m]."""
+
+SOURCE_GAP_M = 0.1
+START_GAP_M = 0.2
+"""Least distances of source and start from walls [m]."""
+
+_PARALLEL_SINE = 0.03
+_SIDE_BY_SIDE_M = 0.2
+_JAMB_M = 0.01
+
+Severity = Literal["error", "warning"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """An error or warning about a plan.
+
+    Attributes
+    ----------
+    severity : {"error", "warning"}
+        An error makes the plan unusable.
+    kind : str
+        Short name, the same for all findings of a kind.
+    text : str
+        What is wrong, where in the file, and what would be right.
+    at : (float, float) or None
+        Where in the building, (x, y) [m]; None if nowhere in particular.
+    """
+
+    severity: Severity
+    kind: str
+    text: str
+    at: PlanPoint | None
+
+
+@dataclass(frozen=True)
+class _Walls:
+    """Walls with their centre lines and their names in the file."""
+
+    walls: tuple[Wall, ...]
+    lines: NDArray[np.object_]
+    names: tuple[str, ...]
+
+
+def warnings_of(file: PlanFile) -> Iterator[Finding]:
+    """Yield the warnings about a plan whose numbers are valid."""
+    plan = file.plan
+    lines = centre_lines(plan.walls)
+    places = (file.place_in_file(("walls", index)) for index in range(len(lines)))
+    walls = _Walls(plan.walls, lines, tuple(format_place(place) for place in places))
+    yield from _walls_that_almost_meet(walls)
+    yield from _walls_side_by_side(walls)
+    yield from _short_walls(walls)
+    yield from _walls_in_openings(walls)
+    yield from _slivers_and_closed_rooms(plan)
+    yield from _near_walls(plan)
+
+
+def _walls_that_almost_meet(walls: _Walls) -> Iterator[Finding]:
+    """Yield free wall ends that stop just short of another wall, or within its thickness."""
+    tree = shapely.STRtree(walls.lines)
+    reach = np.array([wall.thickness_m / 2 + GAP_M for wall in walls.walls])
+    for index, wall in enumerate(walls.walls):
+        for end in (wall.start, wall.end):
+            near = tree.query(Point(end), predicate="dwithin", distance=float(reach.max()))
+            others = near[near != index]
+            gaps = shapely.distance(walls.lines[others], Point(end))
+            meant = gaps <= reach[others]
+            if meant.any() and gaps.min() > TOLERANCE_M:
+                k = int(np.argmin(np.where(meant, gaps, np.inf)))
+                yield Finding(
+                    "warning",
+                    "almost meets",
+                    f"an end of {walls.names[index]} is {gaps[k]:.4g} m from "
+                    f"{walls.names[int(others[k])]}, and waves pass between them: make them meet",
+                    end,
+                )
+
+
+def _walls_side_by_side(walls: _Walls) -> Iterator[Finding]:
+    """Yield walls that run beside each other within their thickness: duplicate walls."""
+    tree = shapely.STRtree(walls.lines)
+    reach = max((wall.thickness_m for wall in walls.walls), default=0.0)
+    for first, second in tree.query(walls.lines, predicate="dwithin", distance=reach).T:
+        if first >= second:
+            continue
+        overlap = _overlap(walls.walls[first], walls.walls[second])
+        if overlap is not None and overlap[1] > TOLERANCE_M:
+            length, apart, at = overlap
+            yield Finding(
+                "warning",
+                "side by side",
+                f"{walls.names[second]} runs beside {walls.names[first]} for {length:.4g} m, "
+                f"{apart:.4g} m off: one wall is one sheet on its centre line",
+                at,
+            )
+
+
+def _overlap(a: Wall, b: Wall) -> tuple[float, float, PlanPoint] | None:
+    """Length, distance and middle of the section on which wall b runs within wall a's body."""
+    along = (np.array(a.end) - a.start) / a.length_m
+    across = np.array([-along[1], along[0]])
+    ends = np.array([b.start, b.end]) - a.start
+    if abs((ends[1] - ends[0]) @ across) > _PARALLEL_SINE * b.length_m:
+        return None
+    s = np.clip(np.sort(ends @ along), 0.0, a.length_m)
+    apart = float(np.abs(ends @ across).mean())
+    if s[1] - s[0] < _SIDE_BY_SIDE_M or apart > (a.thickness_m + b.thickness_m) / 2:
+        return None
+    return float(s[1] - s[0]), apart, a.point_at(float(s.mean()))
+
+
+def _short_walls(walls: _Walls) -> Iterator[Finding]:
+    for wall, name in zip(walls.walls, walls.names, strict=True):
+        if wall.length_m < SLIVER_M:
+            text = f"{name} is only {wall.length_m:.4g} m long: remove it and make the others meet"
+            yield Finding("warning", "sliver", text, wall.start)
+
+
+def _walls_in_openings(walls: _Walls) -> Iterator[Finding]:
+    """Yield ends of walls that lie in an opening of another wall."""
+    ends = [end for wall in walls.walls for end in (wall.start, wall.end)]
+    tree = shapely.STRtree(np.array([Point(end) for end in ends], dtype=np.object_))
+    for name, wall in zip(walls.names, walls.walls, strict=True):
+        for opening in wall.openings:
+            near, far = wall.point_at(opening.offset_m), wall.point_at(opening.end_m)
+            line = LineString([near, far])
+            for k in tree.query(line, predicate="dwithin", distance=TOLERANCE_M):
+                if min(dist(ends[k], near), dist(ends[k], far)) > _JAMB_M:
+                    yield Finding(
+                        "warning",
+                        "wall in opening",
+                        f"{walls.names[int(k) // 2]} ends in a {opening.kind} of {name}: move one "
+                        "of them",
+                        ends[k],
+                    )
+
+
+def _slivers_and_closed_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
+    """Yield regions too narrow to be rooms, and rooms without a door."""
+    separating = [wall for wall in plan.walls if wall.height_m >= min(ROOM_WALL_M, plan.height_m)]
+    noded = shapely.union_all(centre_lines(separating))
+    doors = [
+        Point(wall.point_at(opening.offset_m + opening.width_m / 2))
+        for wall in separating
+        for opening in wall.openings
+        if opening.kind != "window"
+    ]
+    tree = shapely.STRtree(np.array(doors, dtype=np.object_))
+    for room in shapely.get_parts(shapely.polygonize(shapely.get_parts(noded))):
+        inner = room.representative_point()
+        at = (float(inner.x), float(inner.y))
+        if not plan.outline.contains(inner):
+            continue
+        if room.buffer(-SLIVER_M / 2).is_empty:
+            text = f"a sliver of {room.area:.3g} m² between walls; merge them into one wall"
+            yield Finding("warning", "sliver", text, at)
+        elif not len(tree.query(room, predicate="dwithin", distance=1e-4)):
+            yield Finding("warning", "no door", _no_door(room), at)
+
+
+def _no_door(room: Polygon) -> str:
+    x_min, y_min, x_max, y_max = room.bounds
+    return (
+        f"no door or passage leads to the room of {room.area:.4g} m² from ({x_min:.4g}, "
+        f"{y_min:.4g}) to ({x_max:.4g}, {y_max:.4g})"
+    )
+
+
+def _near_walls(plan: UncheckedPlan) -> Iterator[Finding]:
+    """Yield a source or start too close to a wall."""
+    x, y, z = plan.source
+    for name, point, height_m, least in (
+        ("source", (x, y), z, SOURCE_GAP_M),
+        ("start", plan.start, plan.height_m / 2, START_GAP_M),
+    ):
+        if not 0 <= height_m <= plan.height_m:
+            continue
+        walls = MultiLineString(list(plan.solid_segments(height_m)))
+        gap = Point(point).distance(walls)
+        if TOLERANCE_M <= gap < least:
+            text = f"the {name} is {gap:.4g} m from a wall; keep it at least {least:g} m away"
+            yield Finding("warning", f"{name} near wall", text, point)
