@@ -1,0 +1,165 @@
+"""Processes that are killed, interrupted, run twice at once, or have no room to write."""
+
+from __future__ import annotations
+
+import random
+import resource
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from torture.checks import differences, files_in, half_files, temporary_in
+from torture.jobs import JOBS, LIMIT_S, Job, Workshop, command, environment, run_to_end
+
+SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
+CODES = {signal.SIGKILL: -signal.SIGKILL, signal.SIGINT: 130, signal.SIGTERM: 143}
+"""Exit codes after a signal."""
+STARTED_S = 0.3
+"""No signal comes before Python has begun to run the command."""
+SLOW_S = 5.0
+"""An interrupted process ends within this; it is a second on a machine that is not busy."""
+
+
+@dataclass(frozen=True)
+class Attacked:
+    """What came of a job that was attacked.
+
+    Attributes
+    ----------
+    n_attacks
+        How often it was.
+    slowest_s
+        Longest time from a signal to the end of the process [s].
+    faults
+        What was wrong, one sentence each.
+    """
+
+    name: str
+    n_attacks: int
+    slowest_s: float
+    faults: tuple[str, ...]
+
+
+def kill_at_random(name: str, workshop: Workshop, generator: random.Random) -> Attacked:
+    """End a job several times, then let it finish: nothing is half, lost or left behind."""
+    job, folder, wanted = JOBS[name], workshop.before(name), workshop.after(name)
+    faults: list[str] = []
+    slowest_s, n_kills, duration_s = 0.0, 0, None
+    for _ in range(job.kills):
+        sent = generator.choice(SIGNALS)
+        moment_s = STARTED_S + (duration_s or 4.0) * generator.random()
+        ended = _end(job, folder, sent, moment_s, while_writing=generator.random() < 0.3)
+        faults += [f"{sent.name} after {moment_s:.2f} s: {fault}" for fault in ended.faults(sent)]
+        faults += half_files(folder)
+        slowest_s, n_kills = max(slowest_s, ended.took_s), n_kills + ended.was_running
+        duration_s = max(duration_s or 0.0, ended.ran_s)
+    try:
+        run_to_end(job, folder)
+    except RuntimeError as error:
+        faults.append(f"does not finish afterwards: {error}")
+    faults += differences(folder, wanted)
+    return Attacked(name, n_kills, slowest_s, tuple(faults))
+
+
+@dataclass(frozen=True)
+class _Ended:
+    code: int
+    errors: str
+    was_running: bool
+    ran_s: float
+    took_s: float
+
+    def faults(self, sent: signal.Signals) -> Iterator[str]:
+        """What is wrong in how the process ended."""
+        expected = (CODES[sent], 0) if self.was_running else (0,)
+        if self.code not in expected:
+            yield f"exit code {self.code}, expected {expected[0]}: {self.errors[-500:]}"
+        if "Traceback" in self.errors:
+            yield f"a traceback: {self.errors[-1500:]}"
+        elif self.code in (130, 143):
+            yield from _message_faults(self.errors)
+        if self.took_s > SLOW_S:
+            yield f"it took {self.took_s:.1f} s to end"
+
+
+def _message_faults(errors: str) -> Iterator[str]:
+    lines = errors.splitlines()
+    own = [line for line in lines if line.startswith("rssnav: ")]
+    if len(own) != 1 or lines[-1] != own[0]:
+        yield f"expected one last line of rssnav, found {lines[-3:]}"
+
+
+def _end(
+    job: Job, folder: Path, sent: signal.Signals, moment_s: float, while_writing: bool
+) -> _Ended:
+    """Send a signal at a moment, or as soon as the job writes."""
+    known, began = temporary_in(folder), time.monotonic()
+    with subprocess.Popen(
+        command(job.arguments), cwd=folder, env=environment(), stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE, text=True, errors="replace",
+    ) as process:  # fmt: skip
+        while process.poll() is None and time.monotonic() - began < moment_s:
+            time.sleep(0.002)
+            if while_writing and temporary_in(folder) - known:
+                break
+        was_running, at = process.poll() is None, time.monotonic()
+        process.send_signal(sent)
+        try:
+            _, errors = process.communicate(timeout=60.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            _, errors = process.communicate()
+    code = process.returncode
+    return _Ended(code, errors, was_running, at - began, time.monotonic() - at)
+
+
+def fill_the_disk(name: str, workshop: Workshop, generator: random.Random) -> Attacked:
+    """Let a job write only few bytes: it fails with one line and leaves nothing half."""
+    job, folder, wanted = JOBS[name], workshop.before(name), workshop.after(name)
+    before = files_in(folder)
+    largest = max((wanted / file).stat().st_size for file in files_in(wanted) - before or before)
+    limit = generator.randrange(max(largest, 1))
+    done = subprocess.run(
+        command(job.arguments), cwd=folder, env=environment(), capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+        timeout=LIMIT_S,
+    )  # fmt: skip
+    faults = [f"limit of {limit} bytes: {fault}" for fault in _full_disk_faults(done)]
+    faults += [*half_files(folder), *(f"{file} is litter" for file in temporary_in(folder))]
+    run_to_end(job, folder)
+    return Attacked(name, 1, 0.0, (*faults, *differences(folder, wanted)))
+
+
+def _full_disk_faults(done: subprocess.CompletedProcess[str]) -> Iterator[str]:
+    if done.returncode not in (0, 1):
+        yield f"exit code {done.returncode}: {done.stderr[-1500:]}"
+    elif "Traceback" in done.stderr:
+        yield f"a traceback: {done.stderr[-1500:]}"
+    elif done.returncode == 1:
+        yield from _message_faults(done.stderr)
+        if "too large" not in done.stderr:
+            yield f"the message does not say what is full: {done.stderr[-500:]}"
+
+
+def write_twice(name: str, workshop: Workshop, generator: random.Random) -> Attacked:
+    """Run a job twice at once in one folder: one result, whole, and no litter."""
+    job, folder, wanted = JOBS[name], workshop.before(name), workshop.after(name)
+    processes = []
+    for _ in range(2):
+        processes.append(
+            subprocess.Popen(
+                command(job.arguments), cwd=folder, env=environment(), stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE, text=True,
+            )
+        )  # fmt: skip
+        time.sleep(generator.random() / 5)
+    faults: list[str] = []
+    for process in processes:
+        _, errors = process.communicate(timeout=LIMIT_S)
+        if process.returncode not in (0, 1) or "Traceback" in errors:
+            faults.append(f"exit code {process.returncode}: {errors[-1500:]}")
+    faults += [*half_files(folder), *differences(folder, wanted)]
+    return Attacked(name, 1, 0.0, tuple(faults))

@@ -1,0 +1,110 @@
+"""What may be in a folder after an attack, and whether two folders hold the same results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from PIL import Image
+
+import floorplans
+from raytrace import RadioMap
+from raytrace.results.map_file import is_radio_map
+from rssnav import TrainingResult
+
+VOLATILE = ("_time_s", "_cpu_s", "cpu_s")
+"""Ends of names of measured times, which no two runs share."""
+EXACT = (".toml", ".csv", ".geojson", ".yaml", ".pgm", ".glb")
+"""Suffixes of files that are the same in every run."""
+
+
+def files_in(folder: Path) -> set[str]:
+    """All files below a folder."""
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+def temporary_in(folder: Path) -> set[str]:
+    """Files that a writer has not finished."""
+    return {name for name in files_in(folder) if ".part" in Path(name).name}
+
+
+def half_files(folder: Path) -> Iterator[str]:
+    """Finished files that cannot be read to their end."""
+    for name in sorted(files_in(folder) - temporary_in(folder)):
+        try:
+            _read(folder / name)
+        except Exception as error:
+            yield f"{name} is damaged: {type(error).__name__}: {error}"
+
+
+def _read(path: Path) -> None:
+    match path.suffix:
+        case ".h5":
+            (RadioMap if is_radio_map(path) else TrainingResult).load(path)
+        case ".png" | ".gif":
+            with Image.open(path) as picture:
+                for frame in range(getattr(picture, "n_frames", 1)):
+                    picture.seek(frame)
+                    picture.load()
+        case ".json" | ".geojson":
+            json.loads(path.read_text())
+        case ".toml" if path.stem != "misfit":
+            floorplans.load(path)
+        case ".html":
+            _expect_end(path, "</html>")
+        case ".svg":
+            _expect_end(path, "</svg>")
+        case _:
+            if not path.read_bytes():
+                raise ValueError("the file is empty")
+
+
+def _expect_end(path: Path, end: str) -> None:
+    if not path.read_text().rstrip().endswith(end):
+        raise ValueError(f"does not end with {end}")
+
+
+def differences(found: Path, wanted: Path) -> Iterator[str]:
+    """What is missing, too much or different in a folder."""
+    yield from (f"{name} is missing" for name in sorted(files_in(wanted) - files_in(found)))
+    yield from (f"{name} is litter" for name in sorted(files_in(found) - files_in(wanted)))
+    for name in sorted(files_in(wanted) & files_in(found)):
+        one, other = found / name, wanted / name
+        if one.suffix in EXACT and one.read_bytes() != other.read_bytes():
+            yield f"{name} is different"
+        if one.suffix == ".h5":
+            yield from (f"{name}: {key} is different" for key in _differing(one, other))
+
+
+def _differing(one: Path, other: Path) -> list[str]:
+    a, b = _content(one), _content(other)
+    return sorted(key for key in a.keys() | b.keys() if not _same(a.get(key), b.get(key)))
+
+
+def _content(path: Path) -> dict[str, Any]:
+    """Datasets and attributes of an HDF5 file without measured times."""
+    found: dict[str, Any] = {}
+    with h5py.File(path) as file:
+
+        def visit(name: str, item: Any) -> None:
+            found.update({f"{name}@{key}": value for key, value in item.attrs.items()})
+            if isinstance(item, h5py.Dataset):
+                found[name] = item[()]
+
+        visit("", file)
+        file.visititems(visit)
+    ignored = ("REFERENCE_LIST", "DIMENSION_LIST")
+    return {key: v for key, v in found.items() if not key.endswith((*VOLATILE, *ignored))}
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, h5py.Empty) or isinstance(other, h5py.Empty):
+        return type(one) is type(other)
+    one, other = np.asarray(one), np.asarray(other)
+    if one.shape != other.shape or one.dtype != other.dtype:
+        return False
+    return bool(np.array_equal(one, other, equal_nan=one.dtype.kind == "f"))
