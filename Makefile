@@ -7,6 +7,7 @@ RESULTS ?= results
 QUICK ?=
 SECONDS ?= 60
 SEED ?= 0
+KILLS ?= 200
 PEERS ?= .venv-peers
 
 .DEFAULT_GOAL := help
@@ -50,6 +51,9 @@ contracts: install ## check that the packages keep their layers
 
 fuzz: install ## attack readers, options and the library with mutated inputs (SECONDS=60, SEED=0)
 	PYTHONPATH=tests:tests/helpers $(BIN)/python -m fuzz --seconds $(SECONDS) --seed $(SEED)
+
+torture: install ## kill, interrupt, starve and double every command that writes (KILLS=200, SEED=0)
+	PYTHONPATH=tests:tests/helpers $(BIN)/python -m torture --kills $(KILLS) --seed $(SEED)
 
 bench: install ## measure the speed of tracer and learning, side by side with plain C
 	$(BIN)/python -m pytest tests/benchmarks --benchmark-enable --benchmark-only

@@ -143,9 +143,11 @@ def _read_columns(path: Path) -> dict[str, Floats]:
     try:
         with path.open(newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise AntennaError(f"{path}: the file cannot be read: {error}") from error
     keys = tuple(rows[0]) if rows else ()
+    if None in keys:
+        raise AntennaError(f"{path}, line 2: more values than the {len(keys) - 1} headings")
     known = (*ANGLE_KEYS, *GAIN_KEYS, *PHASE_KEYS)
     both = {"gain_theta_dbi", "gain_phi_dbi"} <= set(keys)
     if (

@@ -18,6 +18,7 @@ from rssnav.cli.failures import (
     INTERRUPTED_TEXT,
     is_anticipated,
     print_error,
+    warnings_as_lines,
     with_remedy,
 )
 from rssnav.cli.streams import tolerant_streams
@@ -130,7 +131,7 @@ class Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command; turn anticipated errors into a message and an exit code."""
         try:
-            with _printable_usage():
+            with _printable_usage(), warnings_as_lines():
                 return super().invoke(ctx)
         except KeyboardInterrupt as interrupt:
             print_error(str(interrupt) or INTERRUPTED_TEXT)

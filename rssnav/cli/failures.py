@@ -1,6 +1,10 @@
 """Errors for users: one line on standard error and an exit code, no traceback."""
 
 import sys
+import warnings
+from collections.abc import Generator
+from contextlib import contextmanager
+from typing import Any
 
 from rssnav.messages import describe, printable
 
@@ -37,6 +41,18 @@ def is_anticipated(error: Exception) -> bool:
 def print_error(message: str) -> None:
     """Write a line to standard error, prefixed with the program's name."""
     print(f"rssnav: {printable(message)}", file=sys.stderr)
+
+
+@contextmanager
+def warnings_as_lines() -> Generator[None]:
+    """Write warnings like errors, without the place in the code that they come from."""
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_as_line
+        yield
+
+
+def _show_as_line(message: Warning | str, *_: Any) -> None:
+    print_error(f"warning: {message}")
 
 
 def with_remedy(error: Exception) -> str:

@@ -106,8 +106,7 @@ def run(path: Path) -> None:
         is_option = text.startswith("--")
         arguments.append(text if is_option else text.partition("=")[2])
     with _own_folder(path.parent), _interrupted():
-        result = CliRunner().invoke(app, arguments)
-    _check(result)
+        _check(CliRunner().invoke(app, arguments))
 
 
 def _check(result: Any) -> None:

@@ -164,6 +164,7 @@ class _Run:
 
     def step(self, workers: Sequence[Worker]) -> bool:
         """Give tasks to free workers and take what is done; False when nothing is left."""
+        n_free = 0
         for worker in workers:
             task = None if worker.task else self._next_task()
             if task is not None:
@@ -172,7 +173,9 @@ class _Run:
                 report = worker.result(0.02)
                 if report is not None:
                     self._take(worker, report)
-        return any(worker.task for worker in workers)
+            else:
+                n_free += 1
+        return n_free < len(workers)
 
     def _next_task(self) -> Task | None:
         left = [n for n in self._next if self._most is None or self._next[n] < self._most]

@@ -133,7 +133,9 @@ def _ros_maps() -> st.SearchStrategy[bytes]:
 
 def _imdf_archives() -> st.SearchStrategy[bytes]:
     def packed(members: Any) -> bytes:
-        return samples.zipped({name.strip("\x00") or "?": json_text(m) for name, m in members.items()})
+        return samples.zipped(
+            {name.strip("\x00") or "?": json_text(m) for name, m in members.items()}
+        )
 
     whole = samples.zipped({name: json_text(m) for name, m in samples.imdf().items()})
     return mutated_tree(samples.imdf()).map(packed) | mutated_bytes(whole)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import resource
 import signal
 import subprocess
@@ -87,7 +88,7 @@ class _Ended:
 
 def _message_faults(errors: str) -> Iterator[str]:
     lines = errors.splitlines()
-    own = [line for line in lines if line.startswith("rssnav: ")]
+    own = [line for line in lines if re.match("rssnav: (?!warning: )", line)]
     if len(own) != 1 or lines[-1] != own[0]:
         yield f"expected one last line of rssnav, found {lines[-3:]}"
 

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import dxf_drawings
-import floorplans
 from cli_plans import ROOM
+
+import floorplans
 from floorplans.exporters import export
 
 QUICK = ("--reflections", "1", "--diffractions", "0")
@@ -58,7 +59,9 @@ JOBS = {
     "paths": Job(("paths", "room.toml", "--to", "5,3", "--picture", "paths.png", *OPEN)),
     "plan new": Job(("plan", "new", "-o", "new.toml", "--force")),
     "plan import": Job(("plan", "import", "flat.dxf", "-o", "flat.toml", "--force")),
-    "plan import of GeoJSON": Job(("plan", "import", "room.geojson", "-o", "venue.toml", "--force")),
+    "plan import of GeoJSON": Job(
+        ("plan", "import", "room.geojson", "-o", "venue.toml", "--force")
+    ),
     "plan export": Job(("plan", "export", "room.toml", "-o", "room.glb")),
     "plan export of two files": Job(("plan", "export", "room.toml", "-o", "grid.yaml")),
     "plan show": Job(("plan", "show", "room.toml", "-o", "plan.png")),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from pathlib import Path
 
 import h5py
@@ -257,3 +258,15 @@ def test_command_knows_every_remedy_that_the_libraries_name() -> None:
     named = re.findall(r'remedy = "(\w+)"|remedy="(\w+)"', text)
     assert {first or second for first, second in named} <= set(REMEDIES)
     assert {"make_map", "replace_file", "unit"} <= {first or second for first, second in named}
+
+
+def test_warnings_of_the_libraries_are_plain_lines(tmp_path, monkeypatch) -> None:
+    def load(_: str) -> None:
+        warnings.warn("kernels are kept elsewhere", RuntimeWarning, stacklevel=1)
+        raise floorplans.PlanError("no plan")
+
+    monkeypatch.setattr(floorplans, "load", load)
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        result = run("plan", "show", tmp_path / "room.toml")
+    assert result.stderr == "rssnav: warning: kernels are kept elsewhere\nrssnav: no plan\n"
