@@ -102,6 +102,10 @@ def _warn(message: str) -> None:
     warnings.warn(message, RuntimeWarning, stacklevel=2)
 
 
+def _warn_of_damage(folder: str) -> None:
+    _warn(f"{folder}: damaged kernels are compiled again")
+
+
 def keep_compiled(dispatcher: Any, sources: Path) -> None:
     """Keep what a numba dispatcher compiles in the folder of its sources, if there is one."""
     folder = cache_folder(sources)
@@ -124,8 +128,8 @@ class KernelCache(FunctionCache):
         """Load a compiled function; None, so that it is compiled, where it cannot be read."""
         try:
             return super().load_overload(sig, target_context)
-        except Exception as error:
-            _warn(f"{self._cache_path}: damaged kernels are compiled again ({error})")
+        except Exception:
+            _warn_of_damage(self._cache_path)
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -177,8 +181,8 @@ class _CheckedFiles(IndexDataCacheFile):
             return self._read(self._index_path)
         except OSError:
             return {}
-        except Exception as error:
-            _warn(f"{self._cache_path}: damaged kernels are compiled again ({error})")
+        except Exception:
+            _warn_of_damage(self._cache_path)
             return {}
 
     def _save_index(self, overloads: dict[Any, str]) -> None:

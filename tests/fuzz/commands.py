@@ -114,11 +114,17 @@ def _check(result: Any) -> None:
     if error is not None and not isinstance(error, SystemExit):
         raise error.with_traceback(error.__traceback__)
     assert result.exit_code in RIGHT_CODES, f"exit code {result.exit_code}"
-    assert "Traceback" not in result.output, result.output
+    assert "Traceback" not in _own(result.output), result.output
     if result.exit_code in (1, 130):
         lines = result.stderr.splitlines()
-        assert lines, "no message"
+        assert lines or result.stdout, "no message"
         assert any(line.startswith("rssnav: ") for line in lines) or result.stdout, lines[-1]
+
+
+def _own(output: str) -> str:
+    """Output without what an interrupt leaves in hypothesis, which watches the collector."""
+    head, ignored, rest = output.partition("Exception ignored in: <function gc_cumulative_time")
+    return head + rest.partition("KeyboardInterrupt")[2] if ignored else output
 
 
 @contextmanager

@@ -64,16 +64,17 @@ def attacks(workshop: Workshop) -> Iterator[Attacked]:
 def damaged(place: Path) -> Setting:
     """A copy of the cache in which some files are cut, changed, empty, or folders."""
     generator = random.Random(0)
-    caches = _copy(place)
+    caches, n_lines = _copy(place), 1
     for path in sorted(path for path in caches.rglob("*.nb?") if generator.random() < 0.2):
         content = path.read_bytes()
         at = generator.randrange(len(content))
         path.unlink()
         if generator.random() < 0.1:
             path.mkdir()
+            n_lines = 2  # what cannot be kept is reported as well
         else:
             path.write_bytes(generator.choice((b"", content[:at], content[:at] + b"?" + content)))
-    return Setting({"XDG_CACHE_HOME": str(place)}, MAP, lines=1)
+    return Setting({"XDG_CACHE_HOME": str(place)}, MAP, lines=n_lines)
 
 
 def read_only(place: Path) -> Setting:
