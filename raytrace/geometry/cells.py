@@ -14,10 +14,12 @@ from scipy.spatial import KDTree
 
 from raytrace.arrays import Bools, Floats, Ints
 from raytrace.errors import SceneError
+from raytrace.geometry.chains import Segment, Vertex
+from raytrace.geometry.convex_parts import Edge, Ring, convex_parts, edges_of, undirected
 from raytrace.geometry.junctions import NEAR_M
-from raytrace.geometry.noding import Segment, Vertex, node
+from raytrace.geometry.noding import node
 from raytrace.geometry.sheets import OPEN, Panel, Profile, Sheets
-from raytrace.kernels.plan_view import PARTIAL, PORTAL, WALL, PlanView
+from raytrace.kernels.plan_view import GRAZING_M, PARTIAL, PORTAL, WALL, PlanView
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +55,10 @@ def cut_into_cells(sheets: Sheets) -> CellComplex:
     for a, b in [*walls, *cuts]:
         index.setdefault(a, len(index))
         index.setdefault(b, len(index))
-    rings = [ring for face in faces for ring in _triangles(face, index)]
-    vertices = np.array(list(index))
-    panel_of = {_undirected(index[a], index[b]): panel for (a, b), panel in walls.items()}
-    rings = _merge_convex(rings, vertices, panel_of)
-    outlines = [_outline(ring, vertices, panel_of) for ring in rings]
-    vertices = _unsnapped(vertices, sheets)
+    panel_of = {undirected(index[a], index[b]): panel for (a, b), panel in walls.items()}
+    rings = convex_parts(faces, index, panel_of)
+    outlines = [_outline(ring, panel_of) for ring in rings]
+    vertices = _unsnapped(np.array(list(index)), sheets)
     view = _plan_view(rings, outlines, vertices, sheets.planes)
     segments = tuple((a, b, panel.profile) for (a, b), panel in panel_of.items())
     return CellComplex(view, vertices, segments)
@@ -93,92 +93,27 @@ def _faces(segments: list[Segment], sheets: Sheets) -> list[shapely.Polygon]:
     return inside
 
 
-def _triangles(face: shapely.Polygon, index: dict[Vertex, int]) -> list[list[int]]:
-    """Constrained Delaunay triangles of a face, counter-clockwise, as vertex numbers."""
-    rings = []
-    for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(face)):
-        ring = shapely.get_coordinates(shapely.orient_polygons(triangle))[:3]
-        rings.append([index[(float(x), float(y))] for x, y in ring])
-    return rings
-
-
-def _undirected(a: int, b: int) -> tuple[int, int]:
-    return (a, b) if a < b else (b, a)
-
-
-def _merge_convex(
-    rings: list[list[int]], vertices: Floats, panel_of: dict[tuple[int, int], Panel]
-) -> list[list[int]]:
-    """Remove cuts, longest first, while both sides together stay convex (Hertel-Mehlhorn)."""
-    owner = {edge: k for k, ring in enumerate(rings) for edge in _edges(ring)}
-    cuts = [e for e in owner if e[0] < e[1] and e not in panel_of]
-    cuts.sort(key=lambda e: (-np.hypot(*(vertices[e[0]] - vertices[e[1]])), e))
-    alive = dict(enumerate(rings))
-    for a, b in cuts:
-        left, right = owner[a, b], owner[b, a]
-        if left == right:
-            continue
-        merged = _join(alive[left], alive[right], a, b)
-        corners = (merged.index(a), merged.index(b))
-        if len(set(merged)) < len(merged) or not all(
-            _convex_at(merged, c, vertices) for c in corners
-        ):
-            continue
-        alive[left] = merged
-        del alive[right], owner[a, b], owner[b, a]
-        owner.update(dict.fromkeys(_edges(merged), left))
-    return list(alive.values())
-
-
-def _edges(ring: list[int]) -> list[tuple[int, int]]:
-    return list(zip(ring, ring[1:] + ring[:1], strict=True))
-
-
-def _join(left: list[int], right: list[int], a: int, b: int) -> list[int]:
-    """One ring of two that share the edge a-b (left holds a -> b, right b -> a)."""
-    k, m = left.index(b), right.index(a)
-    from_b_to_a = left[k:] + left[:k]
-    from_a_to_b = right[m:] + right[:m]
-    return from_b_to_a[:-1] + from_a_to_b[:-1]
-
-
-def _turn(ring: list[int], k: int, vertices: Floats) -> tuple[float, float]:
-    """Sine and cosine, times lengths, of the turn at the k-th vertex of a ring."""
-    before, here, after = vertices[[ring[k - 1], ring[k], ring[(k + 1) % len(ring)]]]
-    u, v = here - before, after - here
-    scale = 1.0 / (np.hypot(*u) * np.hypot(*v))
-    return float(u[0] * v[1] - u[1] * v[0]) * scale, float(u @ v) * scale
-
-
-def _convex_at(ring: list[int], k: int, vertices: Floats) -> bool:
-    sine, cosine = _turn(ring, k, vertices)
-    return sine > 1e-9 or (sine > -1e-9 and cosine > 0.0)
-
-
-def _outline(
-    ring: list[int], vertices: Floats, panel_of: dict[tuple[int, int], Panel]
-) -> list[tuple[int, Panel | None]]:
+def _outline(ring: Ring, panel_of: dict[Edge, Panel]) -> list[tuple[int, Panel | None]]:
     """Return a cell's corners, each with the panel on the edge that starts there.
 
-    Collinear full walls of one material, which reflect as one, are joined.
+    Full walls of one plane and one material, which reflect as one, are joined.
     """
-    panels = [panel_of.get(_undirected(a, b)) for a, b in _edges(ring)]
+    panels = [panel_of.get(undirected(a, b)) for a, b in edges_of(ring)]
 
     def is_corner(k: int) -> bool:
         one, two = panels[k - 1], panels[k]
-        joined = (
-            one is not None
-            and two is not None
-            and one.profile.is_full
-            and (one.plane, one.profile) == (two.plane, two.profile)
+        return (
+            one is None
+            or two is None
+            or not one.profile.is_full
+            or (one.plane, one.profile) != (two.plane, two.profile)
         )
-        return not (joined and abs(_turn(ring, k, vertices)[0]) <= 1e-9)
 
     return [(ring[k], panels[k]) for k in range(len(ring)) if is_corner(k)]
 
 
 def _plan_view(
-    rings: list[list[int]],
+    rings: list[Ring],
     outlines: list[list[tuple[int, Panel | None]]],
     vertices: Floats,
     planes: Floats,
@@ -186,7 +121,7 @@ def _plan_view(
     """Arrays of the cells' edges, cell after cell, counter-clockwise."""
     corners = [[v for v, _ in outline] for outline in outlines]
     panels = [panel for outline in outlines for _, panel in outline]
-    ends = np.array([edge for ring in corners for edge in _edges(ring)], dtype=np.int64)
+    ends = np.array([edge for ring in corners for edge in edges_of(ring)], dtype=np.int64)
     cell = np.repeat(np.arange(len(corners)), [len(ring) for ring in corners])
     number = {(int(a), int(b)): k for k, (a, b) in enumerate(ends)}
     twin = np.array([number.get((int(b), int(a)), -1) for a, b in ends], dtype=np.int64)
@@ -222,7 +157,7 @@ def _behind(rings: list[list[int]], corners: list[list[int]], kind: Ints) -> lis
     for ring, kept in zip(rings, corners, strict=True):
         start = ring.index(kept[0])
         number = first - 1
-        for a, b in _edges(ring[start:] + ring[:start]):
+        for a, b in edges_of(ring[start:] + ring[:start]):
             number += a in kept
             owner[a, b] = number
         first += len(kept)
@@ -260,7 +195,7 @@ def _lines(panels: list[Panel | None], ends: Floats, planes: Floats) -> tuple[Fl
     plane = np.empty((len(panels), 3))
     number = np.empty(len(panels), dtype=np.int64)
     for k, panel in enumerate(panels):
-        if panel is not None:
+        if panel is not None and _off(ends[k], planes[panel.plane]) < GRAZING_M:
             number[k] = panel.plane
         else:
             number[k] = _line_through(ends[k], lines)
@@ -270,10 +205,14 @@ def _lines(panels: list[Panel | None], ends: Floats, planes: Floats) -> tuple[Fl
 
 def _line_through(ends: Floats, lines: list[tuple[float, ...]]) -> int:
     """Return the number of the line through two points, which is appended where it is new."""
-    known = np.array(lines).reshape(-1, 3)
-    off = np.abs(known[:, :2] @ ends.T - known[:, 2:]).max(axis=1)
-    if len(off) and off.min() < 1e-7:
+    off = _off(ends, np.array(lines).reshape(-1, 3))
+    if len(off) and off.min() < GRAZING_M:
         return int(off.argmin())
     u = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
     lines.append((-u[1], u[0], float(-u[1] * ends[0, 0] + u[0] * ends[0, 1])))
     return len(lines) - 1
+
+
+def _off(ends: Floats, lines: Floats) -> Floats:
+    """Distance from lines (..., 3) of the one of two points that is farther away [m]."""
+    return np.abs(lines[..., :2] @ ends.T - lines[..., 2:]).max(axis=-1)

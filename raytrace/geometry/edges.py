@@ -14,13 +14,10 @@ import numpy as np
 
 from raytrace.arrays import Ints
 from raytrace.geometry.cells import CellComplex
-from raytrace.geometry.sheets import OPEN, Profile
+from raytrace.geometry.sheets import COINCIDENT_M, OPEN, Profile
 from raytrace.kernels.plan_view import PARTIAL
 
 TURN = 2.0 * np.pi
-
-STRAIGHT_RAD = 1e-6
-"""A wall that bends by less does not diffract [rad]: snapping bends short pieces (`noding`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +76,14 @@ class HorizontalEdge:
     material: int
 
 
+class _Wall(NamedTuple):
+    """A wall as seen from one of its ends: `bend_rad` is what a displaced vertex turns it by."""
+
+    azimuth: float
+    bend_rad: float
+    profile: Profile
+
+
 class _Wedge(NamedTuple):
     o_face: float
     angle: float
@@ -88,11 +93,12 @@ class _Wedge(NamedTuple):
 
 def find_vertical_edges(cells: CellComplex, height_m: float) -> tuple[VerticalEdge, ...]:
     """Return every vertical edge of a building that diffracts."""
-    walls_at: dict[int, list[tuple[float, Profile]]] = {}
+    walls_at: dict[int, list[_Wall]] = {}
     for a, b, profile in cells.wall_segments:
         dx, dy = cells.vertices[b] - cells.vertices[a]
-        walls_at.setdefault(a, []).append((float(np.arctan2(dy, dx)), profile))
-        walls_at.setdefault(b, []).append((float(np.arctan2(-dy, -dx)), profile))
+        bend = COINCIDENT_M / float(np.hypot(dx, dy))
+        walls_at.setdefault(a, []).append(_Wall(float(np.arctan2(dy, dx)), bend, profile))
+        walls_at.setdefault(b, []).append(_Wall(float(np.arctan2(-dy, -dx)), bend, profile))
     around = _cells_around(cells)
     return tuple(
         edge
@@ -115,13 +121,13 @@ def _cells_around(cells: CellComplex) -> dict[int, list[tuple[int, float]]]:
 
 def _edges_at(
     vertex: int,
-    walls: list[tuple[float, Profile]],
+    walls: list[_Wall],
     height_m: float,
     around: list[tuple[int, float]],
     cells: CellComplex,
 ) -> Iterator[VerticalEdge]:
     x, y = cells.vertices[vertex]
-    levels = sorted({0.0, height_m} | {t for _, profile in walls for t in profile.tops})
+    levels = sorted({0.0, height_m} | {t for wall in walls for t in wall.profile.tops})
     standing: list[tuple[_Wedge, float, float]] = []
     for z_low, z_high in pairwise(levels):
         below = {wedge: low for wedge, low, high in standing if high == z_low}
@@ -137,12 +143,18 @@ def _edges_at(
             )  # fmt: skip
 
 
-def _wedges(walls: list[tuple[float, Profile]], z: float) -> Iterator[_Wedge]:
-    """Free sectors of more than half a turn between the walls that stand at height z."""
-    solid = sorted((azimuth, m) for azimuth, p in walls if (m := p.at(z)) != OPEN)
-    for (start, o_slab), (end, n_slab) in zip(solid, solid[1:] + solid[:1], strict=True):
+def _wedges(walls: list[_Wall], z: float) -> Iterator[_Wedge]:
+    """Free sectors of more than half a turn between the walls that stand at height z.
+
+    A wall is straight where a corner is nearer to its line than `COINCIDENT_M`.
+    """
+    solid = sorted(
+        (wall.azimuth, m, wall.bend_rad) for wall in walls if (m := wall.profile.at(z)) != OPEN
+    )
+    for one, two in zip(solid, solid[1:] + solid[:1], strict=True):
+        (start, o_slab, o_bend), (end, n_slab, n_bend) = one, two
         angle = end - start if end > start else end - start + TURN
-        if angle > np.pi + STRAIGHT_RAD:
+        if angle > np.pi + o_bend + n_bend:
             yield _Wedge(start, angle, o_slab, n_slab)
 
 

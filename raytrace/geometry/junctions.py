@@ -2,7 +2,7 @@
 
 Drawings are off by rounding, and sometimes by a little more. A wall end that stops within `NEAR_M`
 short of another wall, or pokes through it by no more, is moved along its own wall onto the other
-one, so no wall bends; `SceneWarning` names both walls.
+one, so no wall bends; for more than `COINCIDENT_M`, `SceneWarning` names both walls.
 """
 
 import warnings
@@ -14,15 +14,10 @@ import shapely
 
 from raytrace.arrays import Floats
 from raytrace.errors import SceneWarning
-from raytrace.geometry.sheets import Panel
-
-Vertex = tuple[float, float]
+from raytrace.geometry.sheets import COINCIDENT_M, Panel
 
 TOUCHING_M = 1e-8
 """A wall end this near another wall meets it [m]: a rounding error."""
-
-ROUNDED_M = 1e-6
-"""A move by less is due to coordinates rounded in a file, and not reported [m]."""
 
 NEAR_M = 1e-3
 """A wall end this near another wall is moved onto it [m]."""
@@ -49,7 +44,7 @@ def join_near_walls(panels: Sequence[Panel]) -> list[Panel]:
     moves = list(_moves(panels))
     for panel, side, to, _ in moves:
         joined[panel] = joined[panel]._replace(**{("start", "end")[side]: to})
-    reported = [move for move in moves if _moved_by(panels, move) > ROUNDED_M]
+    reported = [move for move in moves if _moved_by(panels, move) > COINCIDENT_M]
     if reported:
         warnings.warn(_sentence(panels, reported), SceneWarning, stacklevel=2)
     return joined

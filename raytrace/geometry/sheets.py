@@ -17,8 +17,9 @@ from shapely.geometry.base import BaseGeometry
 from raytrace.arrays import Bools, Floats, Ints
 from raytrace.errors import SceneError
 
-PLANE_TOLERANCE_M = 1e-7
-"""Vertices this close to a plane lie in it [m]."""
+COINCIDENT_M = 1e-6
+"""Points and lines of the plan view this close to each other are one [m]. Plans rounded to six
+decimals, and walls that leave the outline by no more, are read as they were meant."""
 
 OPEN = -1
 """Material of a height interval without a wall."""
@@ -164,10 +165,14 @@ def _floor_or_ceiling(
 
 
 def _group_planes(walls: Floats, normals: Floats) -> tuple[Floats, Ints]:
-    """Planes (n, 3) of the wall triangles, and which plane each lies in."""
+    """Planes (n, 3) of the wall triangles, and which plane each lies in.
+
+    Longer triangles define planes first: their directions are the least affected by rounding.
+    """
+    length = np.hypot(*np.ptp(walls[:, :, :2], axis=1).T)
     plane_of = np.full(len(walls), -1, dtype=np.int64)
     planes: list[tuple[float, float, float]] = []
-    for k in range(len(walls)):
+    for k in np.argsort(-length, kind="stable"):
         if plane_of[k] >= 0:
             continue
         n = normals[k] if (normals[k, 0], normals[k, 1]) > (1e-12, 0.0) else -normals[k]
@@ -177,9 +182,10 @@ def _group_planes(walls: Floats, normals: Floats) -> tuple[Floats, Ints]:
             n = np.array([1.0, 0.0])
         offset = float(n @ walls[k, 0, :2])
         off = np.abs(walls[:, :, :2] @ n - offset).max(axis=1)
-        plane_of[(off < PLANE_TOLERANCE_M) & (plane_of < 0)] = len(planes)
+        plane_of[(off < COINCIDENT_M) & (plane_of < 0)] = len(planes)
         planes.append((float(n[0]), float(n[1]), offset))
-    return np.array(planes).reshape(-1, 3), plane_of
+    first_seen = list(dict.fromkeys(plane_of.tolist()))
+    return np.array(planes).reshape(-1, 3)[first_seen], np.argsort(first_seen)[plane_of]
 
 
 def _panels_of_plane(
@@ -187,10 +193,13 @@ def _panels_of_plane(
 ) -> Iterator[Panel]:
     """Panels of the triangles of one plane: maximal sections of one profile."""
     along = walls[:, :, :2] @ np.array([-plane[1], plane[0]])
-    s, where = _distinct(along.ravel())
+    s, where, number = _distinct(along.ravel(), COINCIDENT_M)
+    along = s[number].reshape(along.shape)
     corners = walls[:, :, :2].reshape(-1, 2)[where]
-    z, _ = _distinct(np.concatenate([walls[:, :, 2].ravel(), [0.0, height]]))
-    filled = _fill(np.stack([along, walls[:, :, 2]], axis=2), materials, s, z, index)
+    z, _, _ = _distinct(np.concatenate([walls[:, :, 2].ravel(), [0.0, height]]), 1e-9)
+    long = np.ptp(along, axis=1) > 0.0
+    triangles = np.stack([along, walls[:, :, 2]], axis=2)[long]
+    filled = _fill(triangles, materials[long], s, z, corners)
     profiles = [_profile(z[1:], column) for column in filled]
     start = 0
     for k in range(1, len(profiles) + 1):
@@ -201,8 +210,8 @@ def _panels_of_plane(
         start = k
 
 
-def _fill(triangles: Floats, materials: Ints, s: Floats, z: Floats, plane: int) -> Ints:
-    """Material (len(s) - 1, len(z) - 1) of each rectangle of the plane, or `OPEN`."""
+def _fill(triangles: Floats, materials: Ints, s: Floats, z: Floats, corners: Floats) -> Ints:
+    """Material (len(s) - 1, len(z) - 1) of each rectangle of a plane, or `OPEN`."""
     middle_s, middle_z = 0.5 * (s[1:] + s[:-1]), 0.5 * (z[1:] + z[:-1])
     grid_s, grid_z = np.meshgrid(middle_s, middle_z, indexing="ij")
     cell_area = np.outer(np.diff(s), np.diff(z))
@@ -211,9 +220,11 @@ def _fill(triangles: Floats, materials: Ints, s: Floats, z: Floats, plane: int) 
         sheet = shapely.union_all(shapely.polygons(triangles[materials == material]))
         inside = shapely.contains_xy(sheet, grid_s, grid_z)
         if abs(cell_area[inside].sum() - sheet.area) > 1e-6:
+            (x1, y1), (x2, y2) = corners[0], corners[-1]
             raise SceneError(
-                f"the wall in plane {plane} is not made of vertical rectangles: its triangles "
-                f"cover {sheet.area:.6f} m2, the rectangles {cell_area[inside].sum():.6f} m2"
+                f"the wall from ({x1:g}, {y1:g}) to ({x2:g}, {y2:g}) is not made of vertical "
+                f"rectangles: its triangles cover {sheet.area:.6f} m2, the rectangles "
+                f"{cell_area[inside].sum():.6f} m2"
             )
         filled[inside & (filled == OPEN)] = material
     return filled
@@ -224,8 +235,10 @@ def _profile(tops: Floats, materials: Ints) -> Profile:
     return Profile(tuple(float(tops[k]) for k in last), tuple(int(materials[k]) for k in last))
 
 
-def _distinct(values: Floats) -> tuple[Floats, Ints]:
-    """Sorted values more than 1e-9 apart, and where each stands in the input."""
+def _distinct(values: Floats, apart: float) -> tuple[Floats, Ints, Ints]:
+    """Sorted values farther apart than that, where each is in the input, and which one each is."""
     order = np.argsort(values, kind="stable")
-    new = np.concatenate([[True], np.diff(values[order]) > 1e-9])
-    return values[order][new], order[new]
+    new = np.concatenate([[True], np.diff(values[order]) > apart])
+    number = np.empty(len(values), dtype=np.int64)
+    number[order] = np.cumsum(new) - 1
+    return values[order][new], order[new], number
