@@ -9,7 +9,7 @@ class SceneError(ValueError):
 
 
 class SceneWarning(UserWarning):
-    """A fault of a mesh that the tracer has corrected; the message names the walls."""
+    """What the tracer corrected in a mesh or bounded in a map; the message names the places."""
 
 
 class AntennaError(ValueError):

@@ -2,6 +2,7 @@
 
 import platform
 import time
+import warnings
 from dataclasses import fields
 from importlib.metadata import version
 from typing import Any
@@ -10,7 +11,9 @@ import numpy as np
 
 from raytrace.arrays import Floats
 from raytrace.config import TraceConfig
+from raytrace.errors import SceneWarning
 from raytrace.grid import Grid
+from raytrace.kernels.sums import Sums
 from raytrace.radio.antennas import Antenna, HalfWaveDipole
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.layers import layers_of
@@ -67,6 +70,7 @@ def trace_paths(
     return (
         Paths(*(np.concatenate([getattr(p, f.name) for p in found]) for f in fields(Paths)))
         .with_halves_joined()
+        .with_bounded_gain()
         .strongest_first()
     )
 
@@ -100,6 +104,12 @@ def compute_radio_map(
     ------
     SceneError
         Where the transmitter is not inside the building.
+
+    Warns
+    -----
+    SceneWarning
+        Where cells are so near to the transmitter that their power is bounded by the transmit
+        power.
     """
     started = time.perf_counter()
     config = config or TraceConfig()
@@ -110,6 +120,7 @@ def compute_radio_map(
         classes, evaluation, max_paths=config.max_paths, threads=threads, progress=progress
     )
     straight_m = np.linalg.norm(points - np.array(transmitter.position), axis=1)
+    _warn_of_near_cells(sums, points)
     layers = layers_of(sums, straight_m, transmitter.power_dbm)
     on_grid: dict[str, Any] = {n: layer.reshape(grid.shape) for n, layer in layers.items()}
     return RadioMap(
@@ -120,6 +131,20 @@ def compute_radio_map(
         provenance=_provenance(scene, time.perf_counter() - started),
         receive_antenna=receive_antenna or HalfWaveDipole(),
     )
+
+
+def _warn_of_near_cells(sums: Sums, points: Floats) -> None:
+    """Warn of cells in which the far field of the paths would exceed what is transmitted."""
+    near = np.flatnonzero(np.maximum(sums.power, np.abs(sums.field) ** 2) > 1.0)
+    if len(near):
+        x, y, z = points[near[0]]
+        warnings.warn(
+            f"{len(near)} of {len(points)} cells are too near to the transmitter for far-field "
+            f"formulas, the first at ({x:g}, {y:g}, {z:g}): their power is set to the transmit "
+            "power; move the transmitter off the cell centre, or receive at another height",
+            SceneWarning,
+            stacklevel=3,
+        )
 
 
 def _provenance(scene: Scene, wall_time_s: float) -> dict[str, str | float | int]:

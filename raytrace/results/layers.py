@@ -96,10 +96,10 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
 
 
 def _dbm(power: Floats, power_dbm: float) -> Floats:
-    """Received power [dBm] of a power gain; -inf for none."""
+    """Received power [dBm] of a power gain, at most the transmit power; -inf for none."""
     dbm = np.full(len(power), -np.inf)
     some = power > 0.0
-    dbm[some] = power_dbm + 10.0 * np.log10(power[some])
+    dbm[some] = power_dbm + 10.0 * np.log10(np.minimum(power[some], 1.0))
     return dbm
 
 

@@ -36,7 +36,8 @@ class Paths:
         (n,) [m].
     gain
         (n,) complex path gain with both antennas: its squared magnitude is received over
-        transmitted power, and the gains of a receiver's paths add up to its coherent field.
+        transmitted power, at most 1, and the gains of a receiver's paths add up to its coherent
+        field.
     weight
         (n,) what a path counts for in sums: 1, or less for a path that grazes a corner or an edge
         and so exists on one side of the receiver only (docs/conventions.md, "Grazing rays").
@@ -164,6 +165,10 @@ class Paths:
     def at(self, receiver: int) -> Paths:
         """Return the paths of one receiver."""
         return self.rows(np.flatnonzero(self.receiver == receiver))
+
+    def with_bounded_gain(self) -> Paths:
+        """Return the same paths, with gains of at most 0 dB (docs/theory.md, section 10)."""
+        return replace(self, gain=self.gain / np.maximum(np.abs(self.gain), 1.0))
 
     def with_halves_joined(self) -> Paths:
         """Return the same paths, with those merged that two beams each found half of (grazing)."""

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 class RadioMap:
     """Received signal strength over a grid, and further layers.
 
-    A layer that was not computed is None. `docs/theory.md`, section 13, defines the layers.
+    No power exceeds the transmit power (docs/conventions.md, "Near the transmitter"). A layer that
+    was not computed is None. `docs/theory.md`, section 13, defines the layers.
 
     Attributes
     ----------

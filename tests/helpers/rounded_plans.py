@@ -40,16 +40,15 @@ def rounded_building(seed: int, size_m: float, n_rows: int, decimals: int) -> Bu
 
 def _row(rng: Generator, size_m: float) -> list[tuple[Point, Point]]:
     """Return walls in one line, with gaps between them."""
-    across, start, stop = np.sort(RASTER_M * rng.integers(0, int(size_m / RASTER_M) + 1, (3, 1)), 1)
-    across = float(across[0])
-    start, stop = sorted((float(start[0]), float(stop[0])))
+    across, one, other = (RASTER_M * rng.integers(0, int(size_m / RASTER_M) + 1, 3)).tolist()
+    start, stop = min(one, other), max(one, other)
     turned = rng.random() < 0.5
     walls: list[tuple[Point, Point]] = []
     while start < stop:
-        end = min(stop, start + RASTER_M * rng.integers(1, 20))
-        ends = (start, across), (end, across)
-        walls.append((ends[0][::-1], ends[1][::-1]) if turned else ends)
-        start = end + RASTER_M * rng.integers(1, 10)
+        end = min(stop, start + RASTER_M * int(rng.integers(1, 20)))
+        row = ((start, across), (end, across))
+        walls.append(((across, start), (across, end)) if turned else row)
+        start = end + RASTER_M * int(rng.integers(1, 10))
     return walls
 
 

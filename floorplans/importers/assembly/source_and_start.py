@@ -64,7 +64,7 @@ def choose_source_and_start(
     if not len(cells):
         inside = outline.representative_point()
         return SourceAndStart(source or (inside.x, inside.y), (inside.x, inside.y), 0.0)
-    clear_m = shapely.distance(shapely.points(cells), MultiLineString(list(solid)))
+    clear_m = np.asarray(shapely.distance(shapely.points(cells), MultiLineString(list(solid))))
     _, labels = connected_components(steps, directed=False)
     if source is None:
         among = labels == np.bincount(labels).argmax()
