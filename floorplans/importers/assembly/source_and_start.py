@@ -22,6 +22,11 @@ _STEPS = ((1, 0), (0, 1), (1, 1), (1, -1))
 _START_CLEAR_M = 0.6
 """Least distance of a start from walls [m], where some cell has it."""
 _AS_CLEAR_M = 0.15
+_OFF_CENTRE_M = 0.3
+"""How far a source is from the centre of its cell [m], where a receiver may be: 5 cm or more from
+the centres of cells of 0.1, 0.25, 0.5 and 1 m."""
+_SOURCE_CLEAR_M = 0.15
+"""A source is moved no nearer to a wall than this [m]."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,8 @@ def choose_source_and_start(
     source: tuple[float, float] | None = None,
 ) -> SourceAndStart:
     """Choose a source away from walls, and as start the cell with the longest walk to it.
+
+    A chosen source is beside the centre of its cell: a receiver there may be at its height.
 
     Cells are squares of 1 m that begin at the outline's lower left corner. Walks go in 8 directions
     over the largest connected set of cells, at the height of flights.
@@ -69,7 +76,8 @@ def choose_source_and_start(
     if source is None:
         among = labels == np.bincount(labels).argmax()
         at = int(np.where(among, clear_m, -1.0).argmax())
-        source = (float(cells[at][0]), float(cells[at][1]))
+        aside = min(_OFF_CENTRE_M, max(float(clear_m[at]) - _SOURCE_CLEAR_M, 0.0))
+        source = (float(cells[at][0]) + aside, float(cells[at][1]))
     else:
         at = int(np.hypot(*(cells - np.array(source)).T).argmin())
     distance_m = dijkstra(steps, directed=False, indices=at)

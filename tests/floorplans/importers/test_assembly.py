@@ -240,6 +240,15 @@ def test_source_and_start_are_far_apart_and_off_the_walls():
     assert places.distance_m > 6
 
 
+@pytest.mark.parametrize("size_m", [0.1, 0.25, 0.5, 1.0])
+def test_a_source_is_on_no_cell_centre(size_m):
+    for depth in (1.0, 4.0, 8.0):
+        walls = [Wall(w.start, w.end, "brick", 0.3, 3.0) for w in ring(0, 0, 12, depth)]
+        x, y = choose_source_and_start(box(0, 0, 12, depth), walls, 3.0).source
+        off = [(c / size_m + 0.5) % 1.0 for c in (x, y)]
+        assert size_m * np.hypot(*np.minimum(off, np.subtract(1.0, off))) > 0.049
+
+
 def test_the_start_is_found_from_a_given_source():
     walls = [Wall(w.start, w.end, "brick", 0.3, 3.0) for w in ring(0, 0, 12, 8)]
     places = choose_source_and_start(box(0, 0, 12, 8), walls, 3.0, source=(1.0, 1.0))
