@@ -4,6 +4,8 @@ import logging
 from collections.abc import Callable
 from threading import Condition, Event, Thread
 
+from rssnav.explorer.fair_turns import TabTurns
+
 LOGGER = logging.getLogger(__name__)
 
 
@@ -38,17 +40,19 @@ Job = Callable[[Ticket], None]
 class NewestOnly:
     """A thread that runs one job at a time and cancels it when a newer one is submitted.
 
-    A job must check its ticket often and handle its own errors; any other error is logged, and the
-    thread continues.
+    A job waits for a turn of its tab. It must check its ticket often and handle its own errors; any
+    other error is logged, and the thread continues.
 
     Parameters
     ----------
     name : str
         Name of the thread.
+    turns : TabTurns
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, turns: TabTurns) -> None:
         self._name = name
+        self._turns = turns
         self._changed = Condition()
         self._waiting: tuple[Job, Ticket] | None = None
         self._ticket = Ticket()
@@ -91,7 +95,8 @@ class NewestOnly:
         while (task := self._next()) is not None:
             job, ticket = task
             try:
-                job(ticket)
+                with self._turns.turn(ticket.check):
+                    job(ticket)
             except SupersededError:
                 continue
             except Exception:

@@ -9,6 +9,7 @@ from typing import Any
 import panel as pn
 
 import floorplans
+from rssnav.explorer.file_names import file_name
 from rssnav.explorer.session import Session
 from rssnav.explorer.styles import WIDGETS
 from rssnav.explorer.tracing import TracedMap
@@ -32,12 +33,6 @@ def figure_file(traced: TracedMap, suffix: str) -> bytes:
         save_map_picture(traced.plan, traced.radio_map, path)
 
     return _written(f"map{suffix}", save)
-
-
-def file_name(plan_name: str, suffix: str) -> str:
-    """File name made from the plan's name: letters, digits, dashes and dots only."""
-    kept = "".join(c if c.isascii() and c.isalnum() else "-" for c in plan_name)
-    return f"{'-'.join(filter(None, kept.split('-'))) or 'plan'}{suffix}"
 
 
 def _written(name: str, save: Callable[[Path], None]) -> bytes:

@@ -110,8 +110,8 @@ def first_frames(steps: list[int]) -> NDArray[np.int64]:
 
 def flight_at(first: NDArray[np.int64], frame: int) -> tuple[int, float]:
     """Index of the flight that a frame shows, and the fraction of it that is flown."""
+    frame = min(max(frame, 0), int(first[-1]) - 1)
     index = int(np.searchsorted(first, frame, side="right")) - 1
-    index = min(max(index, 0), first.size - 2)
     last = int(first[index + 1] - first[index]) - 1
     return index, (frame - int(first[index])) / last if last else 1.0
 

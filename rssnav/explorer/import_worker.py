@@ -1,35 +1,92 @@
-"""``python -m rssnav.explorer.import_worker FILE PLAN BYTES``: import a file within limited memory.
+"""``python -m rssnav.explorer.import_worker FILE LIMITS``: read an upload within limits.
 
-`rssnav.explorer.uploads` runs it, so that a malicious file can only exhaust this process.
+`rssnav.explorer.uploads` runs it in the file's folder, so that a malicious file can only exhaust
+this process. LIMITS is a JSON object with the fields of `rssnav.explorer.limits.Limits`.
 """
 
+import json
+import math
+import re
 import sys
+import tomllib
 from pathlib import Path
 
+import floorplans
 from floorplans import PlanError
 from floorplans.importers import import_plan
+from rssnav.explorer.limits import Limits
+from rssnav.explorer.plan_size import PlanSize
 from rssnav.messages import describe
 
+TOML = ".toml"
+RESULT = "result"
+"""Name of the file that the plan's TOML text is written to."""
+ENTITY_MARKS = {
+    ".dxf": re.compile(rb"^\s*0\s*$", re.MULTILINE),
+    ".geojson": re.compile(rb'"coordinates"'),
+    ".ifc": re.compile(rb"^\s*#\d+\s*=", re.MULTILINE),
+}
+"""What begins each entity in a file of another program."""
 
-def main(file: str, plan: str, n_bytes: str) -> int:
-    """Write the plan in a file to a TOML file; return the exit code."""
-    limit_memory(int(n_bytes))
+
+def main(file: str, limits: str) -> int:
+    """Write the plan in a file to `RESULT`; return the exit code."""
+    chosen = Limits(**json.loads(limits))
+    limit_process(chosen)
+    path = Path(file)
     try:
-        text = import_plan(file).toml()
-    except (PlanError, OSError, MemoryError, ImportError) as error:
-        print(describe(error) or "not enough memory to read the file", file=sys.stderr)
-        return 1
-    Path(plan).write_text(text, encoding="utf-8")
+        text = read_toml(path, chosen) if path.suffix == TOML else import_file(path, chosen)
+        Path(RESULT).write_text(text, encoding="utf-8", newline="\n")
+    except RecursionError:
+        return refuse(f"{file}: arrays or tables are nested too deeply")
+    except UnicodeDecodeError as error:
+        return refuse(f"{file}: not UTF-8 text: {error.reason}")
+    except tomllib.TOMLDecodeError as error:
+        return refuse(f"{file}: not valid TOML: {error}")
+    except (PlanError, OSError, MemoryError, ImportError, ValueError) as error:
+        return refuse(describe(error) or "not enough memory to read the file")
     return 0
 
 
-def limit_memory(n_bytes: int) -> None:
-    """Limit the memory of this process, where the operating system supports it."""
+def refuse(reason: str) -> int:
+    """Write why a file is refused, on one line; return the exit code."""
+    print(" ".join(reason.split()), file=sys.stderr)
+    return 1
+
+
+def read_toml(path: Path, limits: Limits) -> str:
+    """TOML text of the plan in a TOML file, without comments."""
+    text = path.read_text(encoding="utf-8")
+    limits.check_size(PlanSize.of_table(tomllib.loads(text)), path.name)
+    return floorplans.dumps(floorplans.loads(text, origin=path.name))
+
+
+def import_file(path: Path, limits: Limits) -> str:
+    """TOML text of the plan in a file of another program."""
+    n_entities = sum(1 for _ in ENTITY_MARKS[path.suffix].finditer(path.read_bytes()))
+    if n_entities > limits.entities:
+        raise PlanError(
+            f"{n_entities} entities; the explorer accepts at most {limits.entities}: leave out "
+            "details, or use `rssnav plan import`, which has no limit",
+            origin=path.name,
+        )
+    imported = import_plan(path)
+    limits.check_size(PlanSize.of(imported.plan), path.name)
+    return imported.toml()
+
+
+def limit_process(limits: Limits) -> None:
+    """Limit memory, time and files of this process, where the operating system supports it."""
     try:
         import resource
     except ImportError:
         return
-    resource.setrlimit(resource.RLIMIT_AS, (n_bytes, n_bytes))
+    for kind, most in (
+        (resource.RLIMIT_AS, limits.import_bytes),
+        (resource.RLIMIT_CPU, math.ceil(limits.import_s)),
+        (resource.RLIMIT_FSIZE, limits.plan_bytes),
+    ):
+        resource.setrlimit(kind, (most, most))
 
 
 if __name__ == "__main__":

@@ -1,64 +1,89 @@
-"""Limits of the explorer, which serves users who may upload anything."""
+"""Limits of the explorer, which serves users who may upload and send anything."""
 
+import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from floorplans import FloorPlan, PlanError
-from raytrace import Grid
+from raytrace.threads import n_threads
+from rssnav.explorer.plan_size import PlanSize
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits on uploads, plans and maps.
+    """Limits on tabs, messages, uploads, plans, maps and work.
 
     Attributes
     ----------
-    upload_bytes : int
-        Maximum size of a file [bytes].
-    walls : int
-        Maximum number of straight walls of a plan.
+    tabs : int
+        Maximum number of open tabs.
+    jobs : int
+        Maximum number of tabs that compute at the same time.
+    message_bytes : int
+        Maximum size of a message from the browser other than an upload [bytes].
+    upload_bytes, plan_bytes : int
+        Maximum sizes of an uploaded file, and of the TOML text of its plan [bytes].
+    entities : int
+        Maximum number of entities of a drawing, model or collection.
+    walls, openings, outline_points : int
+        Maximum numbers of straight walls, openings and corners of outline and courtyards of a plan.
     cells : int
         Maximum number of cells of a map.
     work : int
         Maximum of walls times cells; the time of a map is roughly proportional to it.
-    map_s : float
-        Time limit for tracing a map [s].
+    map_s, paths_s : float
+        Time limits for tracing a map, and the paths to a cell [s].
     import_s : float
-        Time limit for importing an upload [s].
+        Time limit for reading an upload [s].
     import_bytes : int
-        Memory limit for importing an upload [bytes].
+        Memory limit for reading an upload [bytes].
     """
 
+    tabs: int = 32
+    jobs: int = max(2, n_threads())
+    message_bytes: int = 64_000
     upload_bytes: int = 8_000_000
+    plan_bytes: int = 2_000_000
+    entities: int = 100_000
     walls: int = 1500
+    openings: int = 1500
+    outline_points: int = 1500
     cells: int = 40_000
     work: int = 15_000_000
     map_s: float = 300.0
+    paths_s: float = 60.0
     import_s: float = 60.0
     import_bytes: int = 4_000_000_000
 
     def check_plan(self, plan: FloorPlan) -> None:
-        """Raise `PlanError` for a plan with too many walls."""
-        self.check_walls(len(plan.walls), plan.name)
+        """Raise `PlanError` for a plan with too many parts."""
+        self.check_size(PlanSize.of(plan), plan.name)
 
-    def check_walls(self, n_walls: int, origin: str) -> None:
-        """Raise `PlanError` for too many walls."""
-        if n_walls > self.walls:
-            raise PlanError(
-                f"{n_walls} walls; the explorer accepts plans of at most {self.walls}: leave out "
-                "details, or use `rssnav map`, which has no limit",
-                origin=origin,
-            )
+    def check_size(self, size: PlanSize, origin: str) -> None:
+        """Raise `PlanError` for too many parts."""
+        for name, count, most in (
+            ("walls", size.walls, self.walls),
+            ("openings", size.openings, self.openings),
+            ("corners of the outline", size.outline_points, self.outline_points),
+        ):
+            if count > most:
+                raise PlanError(
+                    f"{count} {name}; the explorer accepts plans of at most {most}: leave out "
+                    "details, or use `rssnav map`, which has no limit",
+                    origin=origin,
+                )
 
-    def check_grid(self, plan: FloorPlan, grid: Grid) -> None:
-        """Raise `PlanError` for a map with too many cells, or too many for its plan's walls."""
-        n_cells = int(np.prod(grid.shape))
+    def check_cells(self, plan: FloorPlan, cell_size_m: float) -> None:
+        """Raise `PlanError` for a map with too many cells, or too many for its plan's walls.
+
+        The cells are counted before a grid of them is made.
+        """
+        x_min, y_min, x_max, y_max = plan.bounds
+        n_cells = max(1.0, (x_max - x_min) / cell_size_m) * max(1.0, (y_max - y_min) / cell_size_m)
         n_allowed = min(self.cells, self.work // max(len(plan.walls), 1))
         if n_cells > n_allowed:
-            finer = grid.cell_size_m * float(np.sqrt(n_cells / n_allowed))
+            finer = cell_size_m * math.sqrt(n_cells / n_allowed)
             raise PlanError(
-                f"{n_cells} cells of {grid.cell_size_m:g} m; the explorer maps at most {n_allowed} "
+                f"{n_cells:.6g} cells of {cell_size_m:g} m; the explorer maps at most {n_allowed} "
                 f"with {len(plan.walls)} walls: use cells of at least {finer:.2g} m",
                 origin=plan.name,
             )

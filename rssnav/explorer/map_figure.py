@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -255,27 +256,28 @@ class MapFigure:
         self._marks.on_change("data", self._moved)
 
     def _tapped(self, event: Any) -> None:
-        self._on_tap(event.x, event.y)
+        if _are_numbers(event.x, event.y):
+            self._on_tap(event.x, event.y)
 
     def _moved(self, _name: str, _old: object, new: dict[str, Any]) -> None:
-        """Report a mark that was dropped elsewhere; restore one that was deleted."""
-        if len(new["x"]) != len(MARKS):
+        """Report a mark that was dropped elsewhere; restore those that are not two points."""
+        x, y = (list(new.get(name, ())) for name in ("x", "y"))
+        if not len(x) == len(y) == len(MARKS) or not _are_numbers(*x, *y):
             self._marks.data = _mark_columns(self._plan)
             return
-        for which, x, y, before in zip(
-            MARKS, new["x"], new["y"], _mark_positions(self._plan), strict=True
-        ):
-            if (x, y) != before:
-                self._on_move(which, float(x), float(y))
+        for which, *dropped, before in zip(MARKS, x, y, _mark_positions(self._plan), strict=True):
+            if tuple(dropped) != before:
+                self._on_move(which, *map(float, dropped))
 
     def _follow_drags(self) -> None:
         """Report the position of a mark while it is dragged."""
 
         def begin(event: Any) -> None:
-            self._dragged = self._mark_at(event.x, event.y)
+            at = (event.x, event.y)
+            self._dragged = self._mark_at(*at) if _are_numbers(*at) else None
 
         def go_on(event: Any) -> None:
-            if self._dragged is not None:
+            if self._dragged is not None and _are_numbers(event.x, event.y):
                 self._on_drag(self._dragged, event.x, event.y)
 
         def end(_event: Any) -> None:
@@ -364,6 +366,11 @@ def _mark_columns(plan: FloorPlan) -> dict[str, Any]:
         "size": [26, 17],
         "colour": [SOURCE, START],
     }
+
+
+def _are_numbers(*values: object) -> bool:
+    """Whether all values, which come from the browser, are finite numbers."""
+    return all(isinstance(value, int | float) and math.isfinite(value) for value in values)
 
 
 def _points(position: NDArray[np.float64]) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """The page of one tab: map, panels and player, updated ten times a second."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -46,6 +45,32 @@ class Changes:
         return any(a is not b and a != b for a, b in zip(before, values, strict=True))
 
 
+class Frame:
+    """The page's regions, empty until a browser has connected, so that a request costs nothing.
+
+    Attributes
+    ----------
+    template : panel.Template
+    """
+
+    def __init__(self) -> None:
+        self._regions = {
+            name: pn.Column(sizing_mode="stretch_both" if name == "view" else "stretch_width")
+            for name in ("bar", "view", "status", "player", "tools")
+        }
+        self.template = pn.Template(PAGE, items=self._regions)
+        self.template.add_variable("page_css", PAGE_CSS)
+
+    def fill(self, **parts: Any) -> None:
+        """Place a part in each region named."""
+        for name, part in parts.items():
+            self._regions[name][:] = [part]
+
+    def refuse(self, reason: str) -> None:
+        """Show why there is no page."""
+        self.fill(status=pn.pane.HTML(problem(reason), stylesheets=WIDGETS))
+
+
 class Page:
     """Shows a session on a page and keeps it up to date.
 
@@ -85,20 +110,15 @@ class Page:
         self._tabs.param.watch(self._switch_tab, "active")
         self.refresh()
 
-    def template(self) -> pn.Template:
-        """Place the parts in the page's HTML."""
-        template = pn.Template(
-            PAGE,
-            items={
-                "bar": pn.Row(self._name, self._views, sizing_mode="stretch_width"),
-                "view": pn.Column(self._canvas, self._space, sizing_mode="stretch_both"),
-                "status": self._status,
-                "player": self._player.view,
-                "tools": self._tabs,
-            },
+    def fill(self, frame: Frame) -> None:
+        """Place the parts in a frame."""
+        frame.fill(
+            bar=pn.Row(self._name, self._views, sizing_mode="stretch_width"),
+            view=pn.Column(self._canvas, self._space, sizing_mode="stretch_both"),
+            status=self._status,
+            player=self._player.view,
+            tools=self._tabs,
         )
-        template.add_variable("page_css", PAGE_CSS)
-        return template
 
     def refresh(self) -> None:
         """Show what has changed in the session."""
@@ -219,17 +239,3 @@ class Page:
             what = "Tracing the reflections" if first else "Adding the diffraction"
             return progress_bar(maps.progress, what)
         return "" if maps.latest is None else map_words(maps.latest)
-
-
-def page_of(session: Session, every: Callable[[Callable[[], None], int], object]) -> pn.Template:
-    """Make a session's page.
-
-    Parameters
-    ----------
-    session : Session
-    every : callable
-        Called with a function and a period [ms], like `panel.state.add_periodic_callback`.
-    """
-    page = Page(session)
-    every(page.refresh, POLL_MS)
-    return page.template()

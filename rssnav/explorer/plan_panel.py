@@ -7,18 +7,30 @@ import panel as pn
 
 import floorplans
 from floorplans import FloorPlan
+from rssnav.explorer.inputs import checked_values, number_input
+from rssnav.explorer.ranges import Range
 from rssnav.explorer.session import Session
 from rssnav.explorer.styles import WIDGETS
 from rssnav.explorer.tracing import MapSettings
 from rssnav.explorer.uploads import ACCEPTED
 
 GIGA = 1e9
+RANGES = {
+    "cell_size_m": Range("Cell [m]", 0.05, 1000.0, 0.25),
+    "height_m": Range("UAV's height [m]", 0.01, 1000.0, 0.1),
+    "source_z_m": Range("Source's height [m]", 0.01, 1000.0, 0.1),
+    "max_reflections": Range("Reflections", 0, 8, whole=True),
+    "power_dbm": Range("Power [dBm]", -50.0, 60.0),
+    "frequency_ghz": Range("Frequency [GHz]", 1.0, 100.0),
+}
 
 
 class PlanDropper(pn.widgets.FileDropper):
-    """A drop area for one file that fits into one message; chunked files are not kept."""
+    """A drop area that keeps the newest file only, and none that comes in several messages."""
 
     def _process_event(self, event: Any) -> None:
+        self.value.clear()
+        self.mime_type.clear()
         if event.event_name == "delete_event" or event.data["total_chunks"] == 1:
             super()._process_event(event)
 
@@ -82,18 +94,7 @@ class PlanPanel:
         return list(dict.fromkeys((*floorplans.builtin_names(), self._session.plan.name)))
 
     def _make_settings(self) -> None:
-        options: dict[str, Any] = {"stylesheets": WIDGETS, "width": 152, "margin": (3, 5)}
-        number = pn.widgets.FloatInput
-        self._inputs: dict[str, Any] = {
-            "cell_size_m": number(label="Cell [m]", start=0.05, step=0.25, **options),
-            "height_m": number(label="UAV's height [m]", start=0.01, step=0.1, **options),
-            "source_z_m": number(label="Source's height [m]", start=0.01, step=0.1, **options),
-            "max_reflections": pn.widgets.IntInput(
-                label="Reflections", start=0, end=8, step=1, **options
-            ),
-            "power_dbm": number(label="Power [dBm]", start=-50.0, end=60.0, step=1.0, **options),
-            "frequency_ghz": number(label="Frequency [GHz]", start=1.0, end=100.0, **options),
-        }
+        self._inputs = {name: number_input(allowed) for name, allowed in RANGES.items()}
         for widget in self._inputs.values():
             widget.param.watch(self._change, "value")
 
@@ -108,8 +109,12 @@ class PlanPanel:
             self._session.upload(name, data)
 
     def _change(self, _event: Any) -> None:
-        values = {name: widget.value for name, widget in self._inputs.items()}
-        if self._showing or None in values.values():
+        if self._showing or any(widget.value is None for widget in self._inputs.values()):
+            return
+        try:
+            values = checked_values(self._inputs, RANGES)
+        except ValueError as error:
+            self._session.problem = str(error)
             return
         source_z_m, frequency_ghz = values.pop("source_z_m"), values.pop("frequency_ghz")
         session = self._session

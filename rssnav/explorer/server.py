@@ -1,10 +1,12 @@
 """The server: one application, a session per tab, and a list of allowed origins."""
 
 import asyncio
+import logging
 import socket
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
+from functools import partial
 from ipaddress import ip_address
 from typing import Any
 
@@ -12,14 +14,19 @@ import panel as pn
 from tornado.websocket import WebSocketClosedError
 
 from floorplans import FloorPlan
+from rssnav.explorer.fair_turns import FairTurns
 from rssnav.explorer.limits import Limits
-from rssnav.explorer.page import page_of
+from rssnav.explorer.page import POLL_MS, Frame, Page
 from rssnav.explorer.session import Session
 from rssnav.explorer.tracing import MapCache
+from rssnav.explorer.websockets import guard_websockets
+
+LOGGER = logging.getLogger(__name__)
 
 LOOPBACK = "127.0.0.1"
 _LOOPBACK_NAMES = (LOOPBACK, "localhost")
-_MESSAGE_OVERHEAD = 1_000_000
+UNUSED_MS = 2000
+"""Time after which the session of a closed tab ends [ms]."""
 
 
 @dataclass(frozen=True)
@@ -65,35 +72,83 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
     """
     port = _free_port(settings.address, settings.port)
     pn.extension("filedropper", notifications=False)
-    cache = MapCache()
-
-    def tab() -> pn.Template:
-        asyncio.get_running_loop().set_exception_handler(_report)
-        session = Session(plan, settings.limits, cache)
-        pn.state.on_session_destroyed(lambda _context: session.close())
-        return page_of(session, pn.state.add_periodic_callback)
-
+    pn.config.exception_handler = _log_briefly
+    guard_websockets(settings.limits)
     names = host_names(settings.address)
     ready(f"http://{names[0]}:{port}/")
     pn.serve(
-        {"/": tab},
+        {"/": Tabs(plan, settings.limits).page},
         port=port,
         address=settings.address,
         websocket_origin=[
             *(f"{name}:{port}" for name in names),
             *with_port(settings.origins, port),
         ],
-        websocket_max_message_size=2 * settings.limits.upload_bytes + _MESSAGE_OVERHEAD,
+        websocket_max_message_size=settings.limits.upload_bytes + settings.limits.message_bytes,
+        unused_session_lifetime_milliseconds=UNUSED_MS,
+        check_unused_sessions_milliseconds=UNUSED_MS // 2,
         title="rssnav explorer",
         show=settings.show,
         verbose=False,
     )
 
 
+class Tabs:
+    """The open tabs: a session for each browser that has connected.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        The plan of a new tab.
+    limits : Limits
+    """
+
+    def __init__(self, plan: FloorPlan, limits: Limits) -> None:
+        self._plan, self._limits = plan, limits
+        self._cache = MapCache()
+        self._turns = FairTurns(limits.jobs)
+        self._n_open = 0
+
+    def page(self) -> pn.Template:
+        """Return an empty page that is filled when its browser connects."""
+        asyncio.get_running_loop().set_exception_handler(_report)
+        frame = Frame()
+        pn.state.onload(partial(self._open, frame))
+        return frame.template
+
+    def _open(self, frame: Frame) -> None:
+        """Open a session and show it, unless too many are open."""
+        if self._n_open >= self._limits.tabs:
+            frame.refuse(
+                f"{self._n_open} tabs are open, the most that this explorer serves: close one, "
+                "then reload this page"
+            )
+            return
+        session = Session(self._plan, self._limits, self._cache, self._turns)
+        self._n_open += 1
+        pn.state.on_session_destroyed(lambda _context: self._close(session))
+        page = Page(session)
+        document = pn.state.curdoc
+        assert document is not None
+        with document.models.freeze():
+            page.fill(frame)
+        pn.state.add_periodic_callback(page.refresh, POLL_MS)
+
+    def _close(self, session: Session) -> None:
+        session.close()
+        self._n_open -= 1
+
+
 def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
     """Report errors between requests, except that a tab was closed during a message."""
     if not isinstance(context.get("exception"), WebSocketClosedError):
         loop.default_exception_handler(context)
+
+
+def _log_briefly(error: Exception) -> None:
+    """Log an error of a widget on one line: whatever a browser sends must not flood the log."""
+    LOGGER.error("a change of the page failed: %s: %.200s", type(error).__name__, error)
+    LOGGER.debug("the change that failed", exc_info=error)
 
 
 def host_names(address: str) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import floorplans
 from floorplans import FloorPlan, PlanError
 from raytrace import Grid, RadioMap
 from rssnav.explorer.background import NewestOnly, Ticket
+from rssnav.explorer.fair_turns import FairTurns, TabTurns
 from rssnav.explorer.limits import Limits
 from rssnav.explorer.tracing import (
     LatestScene,
@@ -41,6 +42,8 @@ class Session:
     limits : Limits, optional
     cache : MapCache, optional
         Shared with other sessions.
+    turns : FairTurns, optional
+        Turns of work, shared with other sessions.
 
     Attributes
     ----------
@@ -57,17 +60,22 @@ class Session:
     """
 
     def __init__(
-        self, plan: FloorPlan, limits: Limits | None = None, cache: MapCache | None = None
+        self,
+        plan: FloorPlan,
+        limits: Limits | None = None,
+        cache: MapCache | None = None,
+        turns: FairTurns | None = None,
     ) -> None:
         self.limits = limits or Limits()
         self.settings = MapSettings()
         scenes = LatestScene()
-        self.maps = MapTracer(self.limits, cache or MapCache(), scenes)
-        self.paths = PathFinder(scenes)
+        self._turns = TabTurns(turns or FairTurns(self.limits.jobs))
+        self.maps = MapTracer(self.limits, cache or MapCache(), scenes, self._turns)
+        self.paths = PathFinder(scenes, self._turns)
         self.training: LiveTraining | None = None
         self.cell: tuple[int, int] | None = None
         self.problem = ""
-        self._reader = NewestOnly("upload")
+        self._reader = NewestOnly("upload", self._turns)
         self._uploaded: FloorPlan | str | None = None
         self.open_plan(plan)
 
@@ -95,7 +103,7 @@ class Session:
         if not height_m < plan.height_m:
             height_m = round(plan.height_m / 2, PLACE_DIGITS)
         settings = replace(self.settings, height_m=height_m)
-        self.limits.check_grid(plan, settings.grid(plan))
+        self.limits.check_cells(plan, settings.cell_size_m)
         self._drop_training()
         self.maps.forget()
         self.paths.forget()
@@ -124,7 +132,7 @@ class Session:
 
     def _read(self, name: str, content: bytes, ticket: Ticket) -> None:
         try:
-            found = read_upload(name, content, self.limits)
+            found = read_upload(name, content, self.limits, ticket.check)
         except PlanError as error:
             found = str(error)
         ticket.check()
@@ -155,11 +163,13 @@ class Session:
     def change_settings(self, settings: MapSettings) -> None:
         """Trace the map with other settings; those that do not fit the plan are rejected."""
         if settings == self.settings:
+            self.problem = ""
             return
         self._try(partial(self._apply, settings))
 
     def _apply(self, settings: MapSettings) -> None:
-        self.limits.check_grid(self.plan, settings.grid(self.plan))
+        self.limits.check_cells(self.plan, settings.cell_size_m)
+        settings.check_height(self.plan)
         self._drop_training()
         self.paths.forget()
         self.cell, self.settings = None, settings
@@ -204,7 +214,7 @@ class Session:
             return
         self.stop_training()
         self.problem = ""
-        self.training = LiveTraining(traced, settings)
+        self.training = LiveTraining(traced, settings, self._turns)
         self.training.start()
 
     def stop_training(self) -> None:

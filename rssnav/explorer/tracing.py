@@ -24,6 +24,7 @@ from raytrace import (
     trace_paths,
 )
 from rssnav.explorer.background import NewestOnly, Ticket
+from rssnav.explorer.fair_turns import TabTurns
 from rssnav.explorer.limits import Limits
 from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM
 from rssnav.scenes import PlanScene
@@ -51,14 +52,18 @@ class MapSettings:
     power_dbm: float = POWER_DBM
     frequency_hz: float = FREQUENCY_HZ
 
-    def grid(self, plan: FloorPlan) -> Grid:
-        """Cells over a plan; raise `PlanError` if they are not between floor and ceiling."""
+    def check_height(self, plan: FloorPlan) -> None:
+        """Raise `PlanError` if the receivers are not between floor and ceiling."""
         if not 0.0 < self.height_m < plan.height_m:
             raise PlanError(
                 f"receivers {self.height_m:g} m above the floor: choose a height above 0 and below "
                 f"{plan.height_m:g} m, the ceiling's",
                 origin=plan.name,
             )
+
+    def grid(self, plan: FloorPlan) -> Grid:
+        """Cells over a plan; raise `PlanError` if they are not between floor and ceiling."""
+        self.check_height(plan)
         return Grid.over(plan.bounds, self.cell_size_m, self.height_m)
 
     def transmitter(self, plan: FloorPlan) -> Transmitter:
@@ -171,14 +176,16 @@ class MapTracer:
         Why the newest request failed; empty if it did not.
     """
 
-    def __init__(self, limits: Limits, cache: MapCache, scenes: LatestScene) -> None:
+    def __init__(
+        self, limits: Limits, cache: MapCache, scenes: LatestScene, turns: TabTurns
+    ) -> None:
         self.latest: TracedMap | None = None
         self.progress: float | None = None
         self.problem = ""
         self._limits = limits
         self._cache = cache
         self._scenes = scenes
-        self._thread = NewestOnly("map")
+        self._thread = NewestOnly("map", turns)
 
     def request(self, plan: FloorPlan, settings: MapSettings) -> None:
         """Trace a map, replacing the one being traced."""
@@ -231,12 +238,11 @@ class MapTracer:
         transmitter: Transmitter | None = None,
     ) -> TracedMap:
         """Trace one map, by default of the plan's source."""
-        grid = settings.grid(plan)
-        self._limits.check_grid(plan, grid)
+        self._limits.check_cells(plan, settings.cell_size_m)
         radio_map = compute_radio_map(
             self._scenes.of(plan),
             transmitter or settings.transmitter(plan),
-            grid,
+            settings.grid(plan),
             TraceConfig(settings.max_reflections, int(complete)),
             progress=self._watch(complete, ticket),
         )
@@ -275,12 +281,12 @@ class PathFinder:
         Why the newest request failed; empty if it did not.
     """
 
-    def __init__(self, scenes: LatestScene) -> None:
+    def __init__(self, scenes: LatestScene, turns: TabTurns) -> None:
         self.latest: CellPaths | None = None
         self.busy = False
         self.problem = ""
         self._scenes = scenes
-        self._thread = NewestOnly("paths")
+        self._thread = NewestOnly("paths", turns)
 
     def request(self, plan: FloorPlan, settings: MapSettings, receiver: Position) -> None:
         """Trace the paths to a receiver [m], replacing the one being traced."""

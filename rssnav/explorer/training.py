@@ -7,7 +7,7 @@ import math
 import time
 from dataclasses import dataclass, field
 from threading import Event, Thread
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from rssnav.agents import Agent, LocationAgent, RssAgent
 from rssnav.decision_process import DecisionProcess
 from rssnav.discrete_states import ExactStates, ToleranceStates
+from rssnav.explorer.background import SupersededError
+from rssnav.explorer.fair_turns import FairTurns, TabTurns
 from rssnav.explorer.tracing import TracedMap
 from rssnav.kernels import common
 from rssnav.learning_parameters import QLearning
@@ -27,6 +29,7 @@ LOGGER = logging.getLogger(__name__)
 
 KEPT_FLIGHTS = 200
 MAX_EPISODES = 20_000
+AgentName = Literal["rss", "location"]
 _CHUNK_EPISODES = 64
 _CHUNK_S = 0.1  # largest duration of a chunk at a limited pace
 
@@ -53,7 +56,7 @@ class TrainingSettings:
         Maximum number of episodes per second, to slow it down for watching.
     """
 
-    agent: Literal["rss", "location"] = "rss"
+    agent: AgentName = "rss"
     speed: int = 1
     episodes: int = 1000
     seed: int = 0
@@ -64,10 +67,12 @@ class TrainingSettings:
     pace: float = math.inf
 
     def __post_init__(self) -> None:
-        """Check episodes and pace; agent and learning rule check the others."""
+        """Check agent, episodes and pace; agent and learning rule check the others."""
+        if self.agent not in get_args(AgentName):
+            raise ValueError(f"agent: {self.agent!r} must be 'rss' or 'location'")
         if not 1 <= self.episodes <= MAX_EPISODES:
             raise ValueError(f"episodes: {self.episodes} must be 1 to {MAX_EPISODES}")
-        if not self.pace > 0.0:
+        if not (isinstance(self.pace, float) and self.pace > 0.0):
             raise ValueError(f"pace: {self.pace!r} must be positive")
 
     def agent_itself(self) -> Agent:
@@ -125,6 +130,8 @@ class LiveTraining:
     traced : TracedMap
         Map that the UAV flies in.
     settings : TrainingSettings
+    turns : TabTurns, optional
+        Turns of its tab; each chunk of episodes takes one.
 
     Attributes
     ----------
@@ -138,7 +145,9 @@ class LiveTraining:
         Why it failed; empty if it did not.
     """
 
-    def __init__(self, traced: TracedMap, settings: TrainingSettings) -> None:
+    def __init__(
+        self, traced: TracedMap, settings: TrainingSettings, turns: TabTurns | None = None
+    ) -> None:
         self.traced, self.settings = traced, settings
         self.flights: list[Flight] = []
         self.shortest_steps: int | None = None
@@ -148,6 +157,7 @@ class LiveTraining:
         self._n_flown = 0
         self._begin_s = 0.0
         self._stop = Event()
+        self._turns = turns or TabTurns(FairTurns(1))
         self._thread = Thread(target=self._run, name="training", daemon=True)
 
     def start(self) -> None:
@@ -175,6 +185,8 @@ class LiveTraining:
     def _run(self) -> None:
         try:
             self._learn()
+        except SupersededError:
+            return
         except (WorldError, ValueError) as error:
             self.problem = str(error)
         except Exception:
@@ -183,32 +195,35 @@ class LiveTraining:
 
     def _learn(self) -> None:
         settings = self.settings
-        world = GridWorld.from_map(self.traced.plan, self.traced.radio_map, settings.speed)
-        problem = LearningProblem.of(world, settings.agent_itself(), settings.learning)
-        self.shortest_steps = shortest_path(world, problem.process.terminal).steps
-        learner = problem.learner(generator_states(settings.seed, 0), settings.episodes)
+        with self._turns.turn(self._check):
+            world = GridWorld.from_map(self.traced.plan, self.traced.radio_map, settings.speed)
+            problem = LearningProblem.of(world, settings.agent_itself(), settings.learning)
+            self.shortest_steps = shortest_path(world, problem.process.terminal).steps
+            learner = problem.learner(generator_states(settings.seed, 0), settings.episodes)
         self._begin_s = time.monotonic()
         learner.trace = np.empty(settings.learning.max_steps, dtype=np.int32)
         for episode in kept_episodes(settings.episodes).tolist():
-            if not self._advance(learner, episode):
-                return
+            self._advance(learner, episode)
             self.flights.append(_latest_flight(learner, problem.process, world))
 
-    def _advance(self, learner: Learner, episode: int) -> bool:
-        """Train up to an episode and store its steps; return False if stopped before."""
+    def _advance(self, learner: Learner, episode: int) -> None:
+        """Train up to an episode and store its steps."""
         counters, pace = learner.run.counters, self.settings.pace
         chunk = int(max(1.0, min(_CHUNK_EPISODES, pace * _CHUNK_S)))
         while (flown := int(counters[common.EPISODE])) < episode:
-            if self._stop.is_set():
-                return False
-            learner.advance(min(episode, flown + chunk))
+            with self._turns.turn(self._check):
+                learner.advance(min(episode, flown + chunk))
             now = int(counters[common.EPISODE])
             self._steps[flown:now] = learner.run.episodes[flown:now, common.STEPS]
             self._n_flown = now
             if counters[common.CONVERGED_EPISODE] >= 0:
                 self.converged_episode = int(counters[common.CONVERGED_EPISODE])
             self._stop.wait(now / pace - (time.monotonic() - self._begin_s))
-        return True
+
+    def _check(self) -> None:
+        """Raise `SupersededError` if asked to stop."""
+        if self._stop.is_set():
+            raise SupersededError
 
 
 def _latest_flight(learner: Learner, process: DecisionProcess, world: GridWorld) -> Flight:

@@ -10,8 +10,10 @@ from bokeh.models import ColumnDataSource, Range1d, Span
 from bokeh.plotting import figure
 from numpy.typing import NDArray
 
-from rssnav.agents import LocationAgent, RssAgent
+from rssnav.agents import RssAgent
+from rssnav.explorer.inputs import checked_values, number_input
 from rssnav.explorer.map_figure import FONT
+from rssnav.explorer.ranges import Range
 from rssnav.explorer.session import Session, suggested_goal_dbm
 from rssnav.explorer.styles import WIDGETS, pairs, problem
 from rssnav.explorer.training import MAX_EPISODES, LiveTraining, TrainingSettings
@@ -24,13 +26,21 @@ SMOOTHED = 25
 
 PACES = {"no limit": math.inf, "50": 50.0, "5": 5.0}
 AGENTS = {"RSS": "rss", "Location": "location"}
-_LEARNING = {
-    "gamma": ("Discount \u03b3", 0.01),
-    "eta": ("Decay \u03b7 per step", 1e-5),
-    "alpha_max": ("Initial learning rate \u03b1", 0.05),
-    "epsilon_max": ("Initial exploration \u03b5", 0.05),
-    "initial_q": ("Initial Q", 10.0),
-    "goal_reward": ("Goal reward", 100.0),
+RANGES = {
+    "speed": Range("Speed [cells per step]", 1, 8, whole=True),
+    "episodes": Range("Episodes", 1, MAX_EPISODES, 100, whole=True),
+    "goal_rss_dbm": Range("Goal: RSS above [dBm]", -1000.0, 1000.0),
+    "goal_distance_m": Range("Goal: within [m]", 0.1, 1000.0, 0.5),
+    "tolerance_db": Range("Tolerance of states [dB]", 0.0, 1000.0, 0.5),
+    "seed": Range("Seed", 0, 2**53 - 1, whole=True),
+}
+LEARNING_RANGES = {
+    "gamma": Range("Discount \u03b3", 0.0, 1.0, 0.01),
+    "eta": Range("Decay \u03b7 per step", 0.0, 1.0, 1e-5),
+    "alpha_max": Range("Initial learning rate \u03b1", QLearning.alpha_min, 1.0, 0.05),
+    "epsilon_max": Range("Initial exploration \u03b5", QLearning.epsilon_min, 1.0, 0.05),
+    "initial_q": Range("Initial Q", -1e9, 1e9, 10.0),
+    "goal_reward": Range("Goal reward", -1e9, 1e9, 100.0),
 }
 
 
@@ -56,7 +66,7 @@ class TrainingPanel:
         self._facts = pn.pane.HTML("", stylesheets=WIDGETS, sizing_mode="stretch_width")
         self.view = pn.Column(
             pn.Row(self._agent, margin=0),
-            pn.FlexBox(*self._inputs.values(), gap="0px 8px"),
+            pn.FlexBox(*self._inputs.values(), self._pace, gap="0px 8px"),
             pn.Card(
                 pn.FlexBox(*self._learning.values(), gap="0px 8px"),
                 header=pn.pane.HTML("Parameters of Q-learning", stylesheets=WIDGETS),
@@ -95,38 +105,22 @@ class TrainingPanel:
         return button
 
     def _make_inputs(self) -> None:
-        options: dict[str, Any] = {"stylesheets": WIDGETS, "width": 152, "margin": (3, 5)}
-        whole, number = pn.widgets.IntInput, pn.widgets.FloatInput
         self._agent = pn.widgets.RadioButtonGroup(
             options=AGENTS, value="rss", stylesheets=WIDGETS, width=220
         )
-        self._inputs: dict[str, Any] = {
-            "speed": whole(label="Speed [cells per step]", value=1, start=1, end=8, **options),
-            "episodes": whole(
-                label="Episodes", value=1000, start=1, end=MAX_EPISODES, step=100, **options
-            ),
-            "goal_rss_dbm": number(
-                label="Goal: RSS above [dBm]", value=RssAgent.terminal_dbm, step=1.0, **options
-            ),
-            "goal_distance_m": number(
-                label="Goal: within [m]",
-                value=LocationAgent.terminal_distance_m,
-                start=0.1,
-                step=0.5,
-                visible=False,
-                **options,
-            ),
-            "tolerance_db": number(
-                label="Tolerance of states [dB]", value=0.0, start=0.0, step=0.5, **options
-            ),
-            "seed": whole(label="Seed", value=0, start=0, **options),
-            "pace": pn.widgets.Select(
-                label="Episodes per second", options=PACES, value=math.inf, **options
-            ),
+        usual = TrainingSettings()
+        self._inputs = {
+            name: number_input(allowed, value=getattr(usual, name))
+            for name, allowed in RANGES.items()
         }
-        self._learning: dict[str, Any] = {
-            name: number(label=label, value=getattr(QLearning, name), step=step, **options)
-            for name, (label, step) in _LEARNING.items()
+        self._inputs["goal_distance_m"].visible = False
+        self._pace = pn.widgets.Select(
+            label="Episodes per second", options=PACES, value=math.inf, stylesheets=WIDGETS,
+            width=152, margin=(3, 5),
+        )  # fmt: skip
+        self._learning = {
+            name: number_input(allowed, value=getattr(usual.learning, name))
+            for name, allowed in LEARNING_RANGES.items()
         }
         self._agent.param.watch(self._choose_agent, "value")
 
@@ -140,11 +134,15 @@ class TrainingPanel:
 
     def _begin(self, _event: Any) -> None:
         """Start a training with the widgets' values."""
-        values = {name: widget.value for name, widget in self._inputs.items()}
         try:
-            learning = QLearning(**{name: widget.value for name, widget in self._learning.items()})
-            settings = TrainingSettings(agent=self._agent.value, learning=learning, **values)
-        except (TypeError, ValueError) as error:
+            values, learning = (
+                checked_values(*panel)
+                for panel in ((self._inputs, RANGES), (self._learning, LEARNING_RANGES))
+            )
+            settings = TrainingSettings(
+                self._agent.value, learning=QLearning(**learning), pace=self._pace.value, **values
+            )
+        except ValueError as error:
             self._rejected = str(error)
             self.show()
             return

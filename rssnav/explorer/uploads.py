@@ -1,28 +1,41 @@
 """Floor plans from uploaded files.
 
-References in an upload are not followed: TOML is parsed as text, and a file of another program is
-imported alone in an empty folder, by a separate process with limited time and memory. Formats of
-several files, such as a ROS map and its picture, are not accepted.
+An upload is read alone in an empty folder, by a separate process with limited time and memory,
+because even a short TOML file can be made to take hours. References in it are not followed.
+Formats of several files, such as a ROS map and its picture, are not accepted.
 """
 
+import json
 import subprocess
 import sys
-import tomllib
+import time
+from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import floorplans
 from floorplans import FloorPlan, PlanError
+from rssnav.explorer.file_names import file_name, shown_name
+from rssnav.explorer.import_worker import ENTITY_MARKS, RESULT, TOML
 from rssnav.explorer.limits import Limits
 
-IMPORTED = (".dxf", ".geojson", ".ifc")
-ACCEPTED = (".toml", *IMPORTED)
+ACCEPTED = (TOML, *ENTITY_MARKS)
 
-_NAME_LENGTH = 80
+_REASON_LENGTH = 500
+_POLL_S = 0.1
 
 
-def read_upload(name: str, content: bytes, limits: Limits | None = None) -> FloorPlan:
+def _never() -> None:
+    """Check for cancellation of a read that cannot be cancelled."""
+
+
+def read_upload(
+    name: str,
+    content: bytes,
+    limits: Limits | None = None,
+    check: Callable[[], None] = _never,
+) -> FloorPlan:
     """Read the plan in an uploaded file.
 
     Parameters
@@ -31,6 +44,8 @@ def read_upload(name: str, content: bytes, limits: Limits | None = None) -> Floo
         File name from the browser; only its suffix matters.
     content : bytes
     limits : Limits, optional
+    check : callable, optional
+        Called every tenth of a second; its exception ends the import.
 
     Raises
     ------
@@ -38,7 +53,7 @@ def read_upload(name: str, content: bytes, limits: Limits | None = None) -> Floo
         When the file is too large, of another format, or holds no usable plan.
     """
     limits = limits or Limits()
-    origin = _origin_of(name)
+    origin = shown_name(name)
     if len(content) > limits.upload_bytes:
         raise PlanError(
             f"{len(content)} bytes; the explorer accepts files of at most {limits.upload_bytes}",
@@ -49,69 +64,58 @@ def read_upload(name: str, content: bytes, limits: Limits | None = None) -> Floo
         raise PlanError(
             f"expected a plan in a file that ends in {', '.join(ACCEPTED)}", origin=origin
         )
-    text = _decoded(content, origin) if suffix == ".toml" else _imported(suffix, content, limits)
-    return _read_toml(text, origin, limits)
-
-
-def _origin_of(name: str) -> str:
-    """File name for messages: printable, without folders, and not too long."""
-    last = name.replace("\\", "/").rsplit("/", 1)[-1]
-    return "".join(c for c in last if c.isprintable())[-_NAME_LENGTH:] or "upload"
-
-
-def _decoded(content: bytes, origin: str) -> str:
-    try:
-        return content.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise PlanError(f"not UTF-8 text: {error.reason}", origin=origin) from error
-
-
-def _read_toml(text: str, origin: str, limits: Limits) -> FloorPlan:
-    """Read a plan; count its walls first, because checking them takes time."""
-    try:
-        limits.check_walls(_n_walls(tomllib.loads(text)), origin)
-        return floorplans.loads(text, origin=origin)
-    except tomllib.TOMLDecodeError as error:
-        raise PlanError(f"not valid TOML: {error}", origin=origin) from error
-    except RecursionError as error:
-        raise PlanError("arrays or tables are nested too deeply", origin=origin) from error
-
-
-def _n_walls(table: dict[str, Any]) -> int:
-    """Number of straight walls in a plan's table, which may be malformed."""
-    walls = table.get("walls")
-    rows = [row for row in walls if isinstance(row, dict)] if isinstance(walls, list) else []
-    points = [row.get("points") for row in rows]
-    return sum(len(line) - 1 for line in points if isinstance(line, list))
-
-
-def _imported(suffix: str, content: bytes, limits: Limits) -> str:
-    """TOML text of the plan in a file of another program."""
     with TemporaryDirectory(prefix="rssnav-") as folder:
-        file, plan = Path(folder) / f"plan{suffix}", Path(folder) / "plan.toml"
+        file = Path(folder) / file_name(PurePosixPath(origin).stem, suffix)
         file.write_bytes(content)
-        command = [sys.executable, "-m", "rssnav.explorer.import_worker"]
+        reason = _run_worker(file, limits, check)
+        if reason:
+            raise PlanError(_in_users_words(reason, file, origin))
+        return floorplans.loads(file.with_name(RESULT).read_text("utf-8"), origin=origin)
+
+
+def _run_worker(file: Path, limits: Limits, check: Callable[[], None]) -> str:
+    """Write the plan in a file to `RESULT` beside it; return why not, or nothing."""
+    arguments = [file.name, json.dumps(asdict(limits))]
+    command = [sys.executable, "-m", "rssnav.explorer.import_worker", *arguments]
+    log = file.with_name("errors.txt")
+    with (
+        log.open("wb") as errors,
+        subprocess.Popen(
+            command,
+            cwd=file.parent,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=errors,
+        ) as worker,
+    ):
         try:
-            done = subprocess.run(
-                [*command, str(file), str(plan), str(limits.import_bytes)],
-                cwd=folder,
-                capture_output=True,
-                stdin=subprocess.DEVNULL,
-                timeout=limits.import_s,
-                check=False,
-            )
-        except subprocess.TimeoutExpired as error:
-            raise PlanError(
-                f"not imported within {limits.import_s:g} s: simplify the drawing, or convert it "
-                "with `rssnav plan import`",
-                origin=file.name,
-            ) from error
-        if done.returncode != 0:
-            raise PlanError(_reason(done.stderr.decode(errors="replace"), folder))
-        return plan.read_text(encoding="utf-8")
+            status = _wait(worker, limits.import_s, check)
+        finally:
+            worker.kill()
+    if status == 0:
+        return ""
+    if status is None:
+        return (
+            f"{file.name}: not read within {limits.import_s:g} s: simplify the drawing, or convert "
+            "it with `rssnav plan import`"
+        )
+    lines = [line for line in log.read_text("utf-8", "replace").splitlines() if line.strip()]
+    return lines[-1] if lines else f"{file.name}: could not be read"
 
 
-def _reason(stderr: str, folder: str) -> str:
-    """Last line that the import worker wrote, without the temporary folder."""
-    lines = [line for line in stderr.splitlines() if line.strip()]
-    return lines[-1].replace(f"{folder}/", "") if lines else "the file could not be read"
+def _wait(worker: subprocess.Popen[bytes], seconds: float, check: Callable[[], None]) -> int | None:
+    """Wait for a process; return its status, or None when its time is over."""
+    ends_s = time.monotonic() + seconds
+    while (left_s := ends_s - time.monotonic()) > 0.0:
+        check()
+        try:
+            return worker.wait(min(left_s, _POLL_S))
+        except subprocess.TimeoutExpired:
+            continue
+    return None
+
+
+def _in_users_words(reason: str, file: Path, origin: str) -> str:
+    """A message of the worker with the file's name as the browser gave it."""
+    named = reason.replace(f"{file.parent}/", "").replace(file.name, origin)
+    return named if len(named) <= _REASON_LENGTH else f"{named[:_REASON_LENGTH]} ..."

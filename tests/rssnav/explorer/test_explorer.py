@@ -21,7 +21,9 @@ from floorplans.geojson_plan import dumps_geojson
 from raytrace import RadioMap, TraceConfig
 from rssnav.explorer.background import NewestOnly, SupersededError
 from rssnav.explorer.cell_panel import page_3d, strongest
-from rssnav.explorer.downloads import figure_file, file_name, map_file, plan_file
+from rssnav.explorer.downloads import figure_file, map_file, plan_file
+from rssnav.explorer.fair_turns import FairTurns, TabTurns
+from rssnav.explorer.file_names import file_name
 from rssnav.explorer.flight_player import FRAMES, first_frames, flight_at
 from rssnav.explorer.limits import Limits
 from rssnav.explorer.map_figure import MapFigure, path_colours
@@ -64,7 +66,7 @@ def session() -> Iterator[Session]:
 
 
 def test_newest_job_takes_the_flight_at_older_ones() -> None:
-    done, begun, thread = [], Event(), NewestOnly("test")
+    done, begun, thread = [], Event(), NewestOnly("test", TabTurns(FairTurns(1)))
 
     def endless(ticket) -> None:
         begun.set()
@@ -83,7 +85,7 @@ def test_newest_job_takes_the_flight_at_older_ones() -> None:
 
 
 def test_a_job_that_fails_is_logged_and_ends_no_other(caplog) -> None:
-    done, thread = Event(), NewestOnly("test")
+    done, thread = Event(), NewestOnly("test", TabTurns(FairTurns(1)))
 
     def failing(_ticket) -> None:
         raise ZeroDivisionError
@@ -260,7 +262,7 @@ def test_a_file_of_another_program_is_read() -> None:
 
 def test_a_reader_gets_no_more_than_its_time_and_memory() -> None:
     content = dumps_geojson(FLAT).encode()
-    with pytest.raises(PlanError, match=r"not imported within 0\.01 s"):
+    with pytest.raises(PlanError, match=r"not read within 0\.01 s"):
         read_upload("flat.geojson", content, Limits(import_s=0.01))
     with pytest.raises(PlanError):
         read_upload("flat.geojson", content, Limits(import_bytes=30_000_000))
