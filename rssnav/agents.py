@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from rssnav.arguments import require
 from rssnav.decision_process import DecisionProcess
 from rssnav.discrete_states import (
     ExactStates,
@@ -24,7 +25,7 @@ from rssnav.discrete_states import (
     StateRule,
     reading_states,
 )
-from rssnav.learning_parameters import QLearning, require
+from rssnav.learning_parameters import QLearning
 from rssnav.world import GOAL_DISTANCE_M, GridWorld, WorldError
 
 _LISTED = 5
@@ -123,7 +124,7 @@ class LocationAgent:
 
     def __post_init__(self) -> None:
         distance_m = self.terminal_distance_m
-        require(0.0 < distance_m < math.inf, "terminal_distance_m", distance_m, "positive")
+        require(0.0 < distance_m < math.inf, "terminal_distance_m", distance_m, "a positive number")
 
     @property
     def name(self) -> str:

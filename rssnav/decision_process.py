@@ -103,7 +103,7 @@ class DecisionProcess:
         ):
             found = getattr(self, name).shape
             if found != shape:
-                raise WorldError(f"decision process: {name} has shape {found}, must be {shape}")
+                raise WorldError(f"decision process: {name} has shape {found}, expected {shape}")
 
     def _check_steps(self, world: GridWorld) -> None:
         """Check that steps follow the world's, and that no state entered lacks an action."""

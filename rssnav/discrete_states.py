@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rssnav.arguments import require
 from rssnav.kernels.q_learning_from_readings import BY_CELL, INTERVALS, TOLERANCE, Sensor
 
 MIN_THRESHOLD_DB = 1e-3
@@ -47,11 +48,9 @@ class ToleranceStates:
     threshold_db: float
 
     def __post_init__(self) -> None:
-        if not MIN_THRESHOLD_DB <= self.threshold_db < math.inf:
-            raise ValueError(
-                f"threshold_db: {self.threshold_db!r} must be a number of at least "
-                f"{MIN_THRESHOLD_DB} dB; for Th = 0 use ExactStates()"
-            )
+        holds = MIN_THRESHOLD_DB <= self.threshold_db < math.inf
+        expected = f"at least {MIN_THRESHOLD_DB} dB; for Th = 0 use ExactStates()"
+        require(holds, "threshold_db", self.threshold_db, expected)
 
 
 @dataclass(frozen=True)
@@ -86,8 +85,8 @@ class IntervalStates:
         """Intervals of equal width from ``low_dbm`` up to ``high_dbm`` or just above."""
         if not (width_db > 0.0 and high_dbm > low_dbm):
             raise ValueError(
-                f"intervals of {width_db!r} dB from {low_dbm!r} to {high_dbm!r} dBm: the width "
-                "must be positive and the upper end above the lower"
+                f"intervals of {width_db!r} dB from {low_dbm!r} to {high_dbm!r} dBm: expected "
+                "a positive width and the upper end above the lower"
             )
         count = math.ceil((high_dbm - low_dbm) / width_db) + 1
         return cls(tuple(low_dbm + width_db * k for k in range(count)))
@@ -112,12 +111,10 @@ class Fluctuation:
     correlation: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.sigma_db < math.inf:
-            raise ValueError(
-                f"sigma_db: {self.sigma_db!r} must be a finite number of dB, 0 or more"
-            )
-        if not 0.0 <= self.correlation < 1.0:
-            raise ValueError(f"correlation: {self.correlation!r} must lie in [0, 1)")
+        finite = 0.0 <= self.sigma_db < math.inf
+        require(finite, "sigma_db", self.sigma_db, "a finite number of at least 0 dB")
+        within = 0.0 <= self.correlation < 1.0
+        require(within, "correlation", self.correlation, "a number in [0, 1)")
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
+from rssnav.arguments import require
+
 LearningRule = Literal["q_learning", "sarsa", "double_q"]
 """Names of the learning rules; :mod:`rssnav.learning_rules` holds the loop of each."""
 
@@ -71,15 +73,15 @@ class QLearning:
     rule: LearningRule = "q_learning"
 
     def __post_init__(self) -> None:
-        require(0.0 <= self.gamma <= 1.0, "gamma", self.gamma, "in [0, 1]")
+        require(0.0 <= self.gamma <= 1.0, "gamma", self.gamma, "0 to 1")
         for name in ("epsilon", "alpha"):
             low, high = getattr(self, f"{name}_min"), getattr(self, f"{name}_max")
-            require(0.0 <= high <= 1.0, f"{name}_max", high, "in [0, 1]")
-            require(0.0 <= low <= high, f"{name}_min", low, f"in [0, {name}_max = {high:g}]")
-        require(0.0 <= self.eta < math.inf, "eta", self.eta, "finite and not negative")
+            require(0.0 <= high <= 1.0, f"{name}_max", high, "0 to 1")
+            require(0.0 <= low <= high, f"{name}_min", low, f"0 to {name}_max = {high:g}")
+        require(0.0 <= self.eta < math.inf, "eta", self.eta, "a finite number of at least 0")
         for name in ("goal_reward", "initial_q"):
             value = getattr(self, name)
-            require(math.isfinite(value), name, value, "finite")
+            require(math.isfinite(value), name, value, "a finite number")
         require(self.max_steps >= 1, "max_steps", self.max_steps, "at least 1")
         for name, choices in _CHOICES.items():
             value = getattr(self, name)
@@ -93,9 +95,3 @@ _CHOICES = {
     "tie_break": ("first", "random"),
     "rule": get_args(LearningRule),
 }
-
-
-def require(holds: bool, name: str, value: object, right: str) -> None:
-    """Raise ValueError, naming the parameter, its value and what is right, unless it holds."""
-    if not holds:
-        raise ValueError(f"{name}: {value!r} must be {right}")

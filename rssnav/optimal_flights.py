@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from rssnav.arguments import require
 from rssnav.decision_process import DecisionProcess
 from rssnav.world import GridWorld
 
@@ -124,8 +125,8 @@ def value_iteration(
     tolerance : float
         Sweeps stop when no value is farther than this from its optimum.
     """
-    if not 0.0 <= gamma < 1.0:
-        raise ValueError(f"gamma: {gamma!r} must lie in [0, 1) for value iteration to converge")
+    expected = "a number in [0, 1), for value iteration to converge"
+    require(0.0 <= gamma < 1.0, "gamma", gamma, expected)
     value = np.zeros(process.terminal.size)
     sweeps, change = 0, np.inf
     while change * gamma > tolerance * (1.0 - gamma):

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from raytrace.threads import n_threads
 from rssnav.agents import RssAgent
+from rssnav.arguments import require
 from rssnav.discrete_states import Fluctuation
 from rssnav.kernels import particle_filter, searchers
 from rssnav.kernels.common import Moves
@@ -63,8 +64,7 @@ class RssAscent:
     def __post_init__(self) -> None:
         for name, least in (("readings", 1), ("escape_steps", 0)):
             value = getattr(self, name)
-            if value < least:
-                raise ValueError(f"{name}: {value!r} must be at least {least}")
+            require(value >= least, name, value, f"at least {least}")
 
     @property
     def name(self) -> str:
@@ -102,16 +102,15 @@ class ParticleFilter:
     steps_to_draw: int = 40
 
     def __post_init__(self) -> None:
-        for name, holds in (
-            ("particles", self.particles >= 2),
-            ("power_dbm", self.power_dbm[0] < self.power_dbm[1]),
-            ("exponent", 0.0 < self.exponent[0] < self.exponent[1]),
-            ("sigma_db", 0.0 < self.sigma_db < math.inf),
-            ("fresh_fraction", 0.0 <= self.fresh_fraction < 1.0),
-            ("steps_to_draw", self.steps_to_draw >= 1),
-        ):
-            if not holds:
-                raise ValueError(f"{name}: {getattr(self, name)!r} {_RIGHT[name]}")
+        power, exponent, fresh = self.power_dbm, self.exponent, self.fresh_fraction
+        rising, positive = "a lower and a higher", "a positive, finite number [dB]"
+        require(self.particles >= 2, "particles", self.particles, "at least 2")
+        require(power[0] < power[1], "power_dbm", power, f"{rising} level [dBm]")
+        both = 0.0 < exponent[0] < exponent[1]
+        require(both, "exponent", exponent, f"{rising} exponent, both positive")
+        require(0.0 < self.sigma_db < math.inf, "sigma_db", self.sigma_db, positive)
+        require(0.0 <= fresh < 1.0, "fresh_fraction", fresh, "a number in [0, 1)")
+        require(self.steps_to_draw >= 1, "steps_to_draw", self.steps_to_draw, "at least 1")
 
     @property
     def name(self) -> str:
@@ -119,14 +118,6 @@ class ParticleFilter:
         return "particle filter"
 
 
-_RIGHT = {
-    "particles": "must be at least 2",
-    "power_dbm": "must be a lower and a higher level [dBm]",
-    "exponent": "must be a lower and a higher exponent, both positive",
-    "sigma_db": "must be a positive, finite number of dB",
-    "fresh_fraction": "must lie in [0, 1)",
-    "steps_to_draw": "must be at least 1",
-}
 _JITTER = np.array([0.5, 0.5, 0.3, 0.05])  # x, y [m], p [dB], n
 
 Searcher = RandomWalk | RssAscent | ParticleFilter
@@ -197,8 +188,7 @@ def search(
         When an RSS agent cannot fly in this world.
     """
     for name, value in (("runs", runs), ("max_steps", max_steps)):
-        if value < 1:
-            raise ValueError(f"{name}: {value!r} must be at least 1")
+        require(value >= 1, name, value, "at least 1")
     process = RssAgent(terminal_dbm=terminal_dbm).decision_process(world, QLearning())
     receiver_of = _receivers(world, fluctuation or Fluctuation(), terminal_dbm)
     fly = _flying(searcher, world, moves_of(process))

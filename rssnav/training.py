@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from raytrace.threads import n_threads
 from rssnav.agents import Agent
+from rssnav.arguments import require
 from rssnav.kernels import common
 from rssnav.learning_parameters import QLearning
 from rssnav.learning_rules import LearningProblem
@@ -174,12 +175,12 @@ def _schedule(
         ("seed", seed, 0),
         ("max_total_steps", max_total_steps, 1),
     ):
-        if isinstance(value, bool) or int(value) != value or value < least:
-            raise ValueError(f"{name}: {value!r} must be a whole number of at least {least}")
+        whole = not isinstance(value, bool) and int(value) == value
+        require(whole and value >= least, name, value, f"a whole number of at least {least}")
     guaranteed = min(episodes, min_episodes) if until_converged else episodes
     snapshots = tuple(sorted({int(k) for k in snapshot_episodes if k <= guaranteed}))
-    if snapshots and snapshots[0] < 1:
-        raise ValueError(f"snapshot_episodes: {snapshots[0]} must be at least 1")
+    if snapshots:
+        require(snapshots[0] >= 1, "snapshot_episodes", snapshots[0], "at least 1")
     return Schedule(
         int(runs),
         int(episodes),

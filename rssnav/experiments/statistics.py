@@ -55,7 +55,7 @@ def ratio(first: ArrayLike, second: ArrayLike) -> Estimate:
     """Mean over the realisations (R1,) of one training over that of another (R2,), positive."""
     a, b = _realisations(first), _realisations(second)
     if b.min() <= 0.0:
-        raise ValueError("ratio: the second values must be positive")
+        raise ValueError("ratio: expected positive second values")
     resampled = _resampled_means(a, 0) / _resampled_means(b, 1)
     return _estimate(float(a.mean() / b.mean()), resampled)
 

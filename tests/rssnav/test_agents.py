@@ -105,10 +105,10 @@ def test_exact_states_and_fluctuating_readings_exclude_each_other():
     ],
 )
 def test_parameters_out_of_range_are_refused_by_name(name, value):
-    with pytest.raises(ValueError, match=f"{name}: .* must be"):
+    with pytest.raises(ValueError, match=f"{name} = .*: expected"):
         QLearning(**{name: value})
 
 
 def test_a_terminal_distance_that_is_not_positive_is_refused():
-    with pytest.raises(ValueError, match=r"terminal_distance_m: 0\.0 must be positive"):
+    with pytest.raises(ValueError, match=r"terminal_distance_m = 0\.0: expected a positive number"):
         LocationAgent(0.0)

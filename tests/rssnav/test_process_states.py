@@ -211,7 +211,7 @@ WRONG = {
     "without an action": (without_an_action, r"has no possible action and is not terminal"),
     "reward's shape": (
         lambda process, world: changed(process, reward=process.reward[1:]),
-        r"reward has shape \(\d+, 8\), must be \(\d+, 8\)",
+        r"reward has shape \(\d+, 8\), expected \(\d+, 8\)",
     ),
     "cells": (
         lambda process, world: changed(process, cell_of_state=process.cell_of_state + 1),

@@ -182,11 +182,11 @@ def test_the_filter_finds_the_source_where_its_model_holds():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: RssAscent(readings=0), "readings: 0 must be at least 1"),
-        (lambda: RssAscent(escape_steps=-1), "escape_steps: -1 must be at least 0"),
-        (lambda: ParticleFilter(particles=1), "particles: 1 must be at least 2"),
-        (lambda: ParticleFilter(exponent=(3.0, 2.0)), "exponent: .* lower and a higher"),
-        (lambda: ParticleFilter(fresh_fraction=1.0), "fresh_fraction: 1.0 must lie in"),
+        (lambda: RssAscent(readings=0), "readings = 0: expected at least 1"),
+        (lambda: RssAscent(escape_steps=-1), "escape_steps = -1: expected at least 0"),
+        (lambda: ParticleFilter(particles=1), "particles = 1: expected at least 2"),
+        (lambda: ParticleFilter(exponent=(3.0, 2.0)), "exponent = .* lower and a higher"),
+        (lambda: ParticleFilter(fresh_fraction=1.0), "fresh_fraction = 1.0: expected"),
     ],
 )
 def test_parameters_out_of_range_are_refused(make, message):
@@ -196,7 +196,5 @@ def test_parameters_out_of_range_are_refused(make, message):
 
 @pytest.mark.parametrize("wrong", [{"runs": 0}, {"max_steps": 0}, {"threads": 0}])
 def test_budgets_out_of_range_are_refused(wrong):
-    with pytest.raises(
-        ValueError, match=rf"{next(iter(wrong))}(: 0 must be| = 0: expected) at least 1"
-    ):
+    with pytest.raises(ValueError, match=f"{next(iter(wrong))} = 0: expected at least 1"):
         search(world_of(room_plan()), RandomWalk(), **wrong)

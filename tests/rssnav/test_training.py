@@ -215,14 +215,14 @@ def test_resuming_a_complete_result_trains_nothing(room_world):
 def test_resuming_another_training_is_refused(room_world, name, changes):
     part = train(room_world, RssAgent(), runs=2, episodes=5, only_runs=[0])
     options = {"agent": RssAgent(), **changes}
-    with pytest.raises(ValueError, match=f"another {name}"):
+    with pytest.raises(ValueError, match=f"a different {name}"):
         train(room_world, runs=2, episodes=5, resume=part, **options)
 
 
 def test_resuming_in_another_world_is_refused(room_world):
     part = train(room_world, RssAgent(), runs=2, episodes=5, only_runs=[0])
     louder = replace(room_world, rss_dbm=room_world.rss_dbm + 0.1)
-    with pytest.raises(ValueError, match="another radio map"):
+    with pytest.raises(ValueError, match="a different radio map"):
         train(louder, RssAgent(), runs=2, episodes=5, resume=part)
 
 

@@ -232,9 +232,9 @@ def test_wrong_usage_ends_with_2(tmp_path, monkeypatch, arguments, expected) -> 
         (("--tolerance", "1", "--interval", "1"), "not both"),
         (("--agent", "location", "--tolerance", "1"), "use --agent rss"),
         (("--fluctuation", "1"), "ToleranceStates or IntervalStates"),
-        (("--interval", "-1"), "the width must be positive"),
-        (("--gamma", "1.5"), "gamma: 1.5 must be in"),
-        (("--agent", "location", "--goal-distance", "0"), "must be positive"),
+        (("--interval", "-1"), "a positive width"),
+        (("--gamma", "1.5"), "gamma = 1.5: expected 0 to 1"),
+        (("--agent", "location", "--goal-distance", "0"), "a positive number"),
     ],
 )
 def test_options_that_contradict(made, monkeypatch, options, expected) -> None:

@@ -57,5 +57,5 @@ def test_one_value_per_realisation_is_needed(values):
 
 
 def test_a_ratio_needs_positive_values():
-    with pytest.raises(ValueError, match="must be positive"):
+    with pytest.raises(ValueError, match="positive second values"):
         ratio([1.0, 2.0], [1.0, 0.0])
