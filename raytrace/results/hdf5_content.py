@@ -80,7 +80,7 @@ def _is_sound_heap(content: bytes, at: int) -> bool:
         index, length = struct.unpack_from("<H6xQ", content, at)
         if index == 0:
             return length == end - at
-        if length == 0 or length > end - at - 16:
+        if length > end - at - 16:
             return False
         at += 16 + (length + 7) // 8 * 8
     return True
