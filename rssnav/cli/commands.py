@@ -12,6 +12,7 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_group
 
+from rssnav.cli.boundaries import check_before_work
 from rssnav.cli.failures import (
     EXIT_FAILURE,
     INTERRUPTED,
@@ -111,6 +112,7 @@ class Commands(TyperGroup):
         for module in COMMANDS[name].modules:
             import_module(f"rssnav.cli.{module}").add_to(part)
         self.commands[name] = get_group(part).commands[name]
+        check_before_work(self.commands[name])
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run a command line, on terminals of any encoding and into pipes that close early."""

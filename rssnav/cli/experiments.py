@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rssnav.cli.console import note, print_table, say, stage_progress
-from rssnav.cli.options import Style, Threads, examples
+from rssnav.cli.options import MAX_RUNS, Seed, Style, Threads, examples
 from rssnav.kernel_cache import learning_cache, tracer_cache
 
 if TYPE_CHECKING:
@@ -61,11 +61,12 @@ def run_experiments(
         typer.Option(
             metavar="N",
             min=1,
+            max=MAX_RUNS,
             help="Realisations of each configuration.",
             show_default="100, or 8 with --quick",
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Same seed, same result.")] = 0,
+    seed: Seed = 0,
     resume: Annotated[
         bool,
         typer.Option(

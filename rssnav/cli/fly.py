@@ -12,7 +12,7 @@ from raytrace import RadioMap
 from rssnav import TrainingResult
 from rssnav.cli.console import one_progress, print_json, print_pairs
 from rssnav.cli.failures import EXIT_FAILURE, print_error
-from rssnav.cli.options import Json, Plan, Style, check_suffix, examples
+from rssnav.cli.options import MAX_RUNS, Json, Plan, Style, check_suffix, examples
 from rssnav.maps import require_map_for
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ def fly(
         typer.Option(
             metavar="N",
             min=0,
+            max=MAX_RUNS,
             help="Realisation, counted from 0.",
             show_default="the one of median length",
         ),

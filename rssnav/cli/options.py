@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+MAX_RUNS = 100_000
+
 
 def _known_edition(edition: str | None) -> str | None:
     from floorplans import MATERIAL_EDITIONS
@@ -30,10 +32,14 @@ Plan = Annotated[
     ),
 ]
 CellSize = Annotated[
-    float, typer.Option("--cell-size", metavar="M", min=0.05, help="Side of a cell in metres.")
+    float,
+    typer.Option("--cell-size", metavar="M", min=0.05, max=100.0, help="Side of a cell in metres."),
 ]
 Height = Annotated[
-    float, typer.Option("--height", metavar="M", help="Height of the receivers in metres.")
+    float,
+    typer.Option(
+        "--height", metavar="M", min=0.0, max=1000.0, help="Height of the receivers in metres."
+    ),
 ]
 Reflections = Annotated[
     int,
@@ -66,6 +72,8 @@ MinPower = Annotated[
     typer.Option(
         "--min-power",
         metavar="DBM",
+        min=-1000.0,
+        max=200.0,
         help="Prune paths that are weaker; the map stores a bound on their power.",
         show_default="no threshold",
     ),
@@ -76,15 +84,21 @@ MaxPaths = Annotated[
         "--max-paths",
         metavar="N",
         min=1,
+        max=2**62,
         help="Raise --min-power until the map needs no more paths than this.",
         show_default="no limit",
     ),
 ]
 Frequency = Annotated[
     float,
-    typer.Option("--frequency", metavar="GHZ", min=0.001, help="Carrier frequency in GHz."),
+    typer.Option(
+        "--frequency", metavar="GHZ", min=0.001, max=1000.0, help="Carrier frequency in GHz."
+    ),
 ]
-Power = Annotated[float, typer.Option("--power", metavar="DBM", help="Transmit power in dBm.")]
+Power = Annotated[
+    float,
+    typer.Option("--power", metavar="DBM", min=-200.0, max=200.0, help="Transmit power in dBm."),
+]
 Edition = Annotated[
     str | None,
     typer.Option(
@@ -101,9 +115,17 @@ Threads = Annotated[
         "--threads",
         metavar="N",
         min=1,
+        max=4096,
         help="Number of threads; the result does not depend on it.",
         show_default="all processors",
     ),
+]
+Runs = Annotated[
+    int, typer.Option("--runs", metavar="N", min=1, max=MAX_RUNS, help="Realisations.")
+]
+Seed = Annotated[
+    int,
+    typer.Option("--seed", metavar="N", min=0, max=2**63 - 1, help="Same seed, same result."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 Force = Annotated[bool, typer.Option("--force", help="Recompute it, and replace an existing FILE.")]

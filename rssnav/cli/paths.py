@@ -74,7 +74,10 @@ def show_paths(
         ),
     ],
     top: Annotated[
-        int, typer.Option("--top", metavar="N", min=1, help="Number of paths to print and draw.")
+        int,
+        typer.Option(
+            "--top", metavar="N", min=1, max=1_000_000, help="Number of paths to print and draw."
+        ),
     ] = 10,
     only: Annotated[
         str,

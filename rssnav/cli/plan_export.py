@@ -37,12 +37,17 @@ def export(
         ),
     ],
     resolution: Annotated[
-        float, typer.Option(metavar="M", min=0.001, help="Side of a pixel of a ROS map in metres.")
+        float,
+        typer.Option(
+            metavar="M", min=0.001, max=10.0, help="Side of a pixel of a ROS map in metres."
+        ),
     ] = 0.05,
     slice_height: Annotated[
         float | None,
         typer.Option(
             metavar="M",
+            min=0.0,
+            max=1000.0,
             help="Height in metres of the section that a ROS map shows.",
             show_default="1, or half the storey where that is less",
         ),
@@ -50,7 +55,10 @@ def export(
     frequency: Annotated[
         float,
         typer.Option(
-            metavar="GHZ", min=0.001, help="For own materials in a Sionna RT scene, in GHz."
+            metavar="GHZ",
+            min=0.001,
+            max=1000.0,
+            help="For own materials in a Sionna RT scene, in GHz.",
         ),
     ] = 2.4,
 ) -> None:

@@ -85,12 +85,20 @@ def import_file(
     ] = None,
     height: Annotated[
         float | None,
-        typer.Option(metavar="M", help="From floor to ceiling.", show_default="the file's, or 3"),
+        typer.Option(
+            metavar="M",
+            min=0.1,
+            max=1000.0,
+            help="From floor to ceiling.",
+            show_default="the file's, or 3",
+        ),
     ] = None,
     wall_thickness: Annotated[
         float | None,
         typer.Option(
             metavar="M",
+            min=1e-4,
+            max=1000.0,
             help="Of walls whose thickness the file does not state.",
             show_default="0.1",
         ),
@@ -129,12 +137,17 @@ def import_file(
         str | None, typer.Option(help="Which storey, where the file holds several.")
     ] = None,
     scale: Annotated[
-        float | None, typer.Option(metavar="M", help="Side of a pixel, for pictures.")
+        float | None,
+        typer.Option(metavar="M", min=1e-4, max=1000.0, help="Side of a pixel, for pictures."),
     ] = None,
     tolerance: Annotated[
         float | None,
         typer.Option(
-            metavar="M", help="How far walls may be moved to meet.", show_default="the format's"
+            metavar="M",
+            min=1e-9,
+            max=1000.0,
+            help="How far walls may be moved to meet.",
+            show_default="the format's",
         ),
     ] = None,
     layer: Annotated[

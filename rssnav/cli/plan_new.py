@@ -27,7 +27,7 @@ def new(
         str, typer.Option(metavar="WxD", help="Extent along x and y in metres.")
     ] = "12x9",
     height: Annotated[
-        float, typer.Option(metavar="M", help="From floor to ceiling in metres.")
+        float, typer.Option(metavar="M", min=2.5, max=50.0, help="From floor to ceiling in metres.")
     ] = 3.0,
     force: Annotated[bool, typer.Option("--force", help="Replace whatever is at FILE.")] = False,
 ) -> None:

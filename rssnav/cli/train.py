@@ -28,7 +28,7 @@ from rssnav import (
     train,
 )
 from rssnav.cli.console import note, one_progress, print_json, print_pairs, say
-from rssnav.cli.options import Json, Plan, Threads, examples
+from rssnav.cli.options import Json, Plan, Runs, Seed, Threads, examples
 from rssnav.discrete_states import StateRule
 from rssnav.keeping import lenient, save_or_rescue
 from rssnav.kernel_cache import learning_cache
@@ -69,14 +69,15 @@ def train_agent(
     ],
     agent: Annotated[AgentName, typer.Option(help="What the agent senses.")] = AgentName.RSS,
     speed: Annotated[
-        int, typer.Option(metavar="V", min=1, help="Cells per step along an axis.")
+        int, typer.Option(metavar="V", min=1, max=1000, help="Cells per step along an axis.")
     ] = 1,
-    runs: Annotated[int, typer.Option(metavar="N", min=1, help="Realisations.")] = 100,
+    runs: Runs = 100,
     episodes: Annotated[
         int | None,
         typer.Option(
             metavar="N",
             min=1,
+            max=10_000_000,
             help="Episodes of each; a maximum with --until-converged.",
             show_default=f"{EPISODES}, or {EPISODES_TO_CONVERGE} with --until-converged",
         ),
@@ -87,7 +88,7 @@ def train_agent(
             "--until-converged", help="Stop a run when it flies the same path three times in a row."
         ),
     ] = False,
-    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Same seed, same result.")] = 0,
+    seed: Seed = 0,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -105,6 +106,8 @@ def train_agent(
         float | None,
         typer.Option(
             metavar="DB",
+            min=0.0,
+            max=1000.0,
             help="A reading within this of a known state is that state.",
             show_default="every value is a state",
             rich_help_panel=STATES,
@@ -114,6 +117,8 @@ def train_agent(
         float | None,
         typer.Option(
             metavar="DB",
+            min=0.001,
+            max=1000.0,
             help="States are RSS intervals of this width.",
             show_default="every value is a state",
             rich_help_panel=STATES,
@@ -123,6 +128,8 @@ def train_agent(
         float,
         typer.Option(
             metavar="DB",
+            min=0.0,
+            max=100.0,
             help="Standard deviation of the RSS readings; needs --tolerance or --interval.",
             rich_help_panel=STATES,
         ),
@@ -131,6 +138,8 @@ def train_agent(
         float,
         typer.Option(
             metavar="DBM",
+            min=-1000.0,
+            max=1000.0,
             help="The RSS agent has found the source above this RSS.",
             rich_help_panel=GOAL,
         ),
@@ -139,27 +148,40 @@ def train_agent(
         float,
         typer.Option(
             metavar="M",
+            min=0.0,
+            max=10_000.0,
             help="The location agent has found the source within this distance in metres.",
             rich_help_panel=GOAL,
         ),
     ] = LocationAgent.terminal_distance_m,
     gamma: Annotated[
-        float, typer.Option(metavar="G", help="Discount factor.", rich_help_panel=LEARNING)
+        float,
+        typer.Option(
+            metavar="G", min=0.0, max=1.0, help="Discount factor.", rich_help_panel=LEARNING
+        ),
     ] = QLearning.gamma,
     eta: Annotated[
         float,
         typer.Option(
-            metavar="E", help="Decay of epsilon and alpha per step.", rich_help_panel=LEARNING
+            metavar="E",
+            min=0.0,
+            max=1.0,
+            help="Decay of epsilon and alpha per step.",
+            rich_help_panel=LEARNING,
         ),
     ] = QLearning.eta,
     initial_q: Annotated[
         float,
-        typer.Option(metavar="Q", help="Initial Q.", rich_help_panel=LEARNING),
+        typer.Option(metavar="Q", min=-1e9, max=1e9, help="Initial Q.", rich_help_panel=LEARNING),
     ] = QLearning.initial_q,
     max_steps: Annotated[
         int,
         typer.Option(
-            metavar="N", help="Steps after which an episode is truncated.", rich_help_panel=LEARNING
+            metavar="N",
+            min=1,
+            max=10**9,
+            help="Steps after which an episode is truncated.",
+            rich_help_panel=LEARNING,
         ),
     ] = QLearning.max_steps,
     threads: Threads = None,
