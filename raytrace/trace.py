@@ -25,7 +25,7 @@ from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.setup import prepare
 
-TRACER_VERSION = 3
+TRACER_VERSION = 4
 """Grows whenever the same scene would give another map."""
 
 

@@ -109,8 +109,8 @@ def _merged(rings: list[Ring], vertices: Floats, walls: Collection[Edge]) -> lis
     cuts.sort(key=lambda e: (-np.hypot(*(vertices[e[0]] - vertices[e[1]])), e))
     alive = dict(enumerate(rings))
     for a, b in cuts:
-        left, right = owner[a, b], owner[b, a]
-        if left == right:
+        left, right = owner[a, b], owner.get((b, a))
+        if right is None or left == right:
             continue
         merged = _joined(alive[left], alive[right], a, b)
         if len(set(merged)) < len(merged) or not _is_convex(vertices[merged]):

@@ -106,7 +106,11 @@ def _held_by(bridge: Segment, pieces: Sequence[Segment]) -> tuple[set[Vertex], F
             waiting += fresh
         if outermost not in held:
             return held, _direction(near, far)
-    raise AssertionError(f"{bridge} lies on a ring, so it is no bridge")
+    (x1, y1), (x2, y2) = bridge
+    raise SceneError(
+        f"the walls at both ends of ({x1:g}, {y1:g}) to ({x2:g}, {y2:g}) reach the outside: "
+        "the walls do not enclose the footprint"
+    )
 
 
 def _direction(start: Vertex, end: Vertex) -> Floats:
