@@ -1,4 +1,8 @@
-"""Collinear walls: those that overlap or continue each other are merged."""
+"""Collinear walls: those that overlap or continue each other are merged.
+
+This works on finished walls with materials, heights and openings. Imported centre lines, which have
+none yet and lie less exactly, are joined before by `floorplans.importers.centrelines.axes`.
+"""
 
 from __future__ import annotations
 

@@ -81,7 +81,6 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
     variance = np.maximum(mean[:, EXCESS_SQUARED] - mean[:, EXCESS] ** 2, 0.0)
     focus = mean[:, COSINE] ** 2 + mean[:, SINE] ** 2
     strongest = moments[:, STRONGEST]
-    rest = np.where(n_paths > 1.0, np.maximum(power - strongest, 0.0), 0.0)
     return {
         "rss_dbm": _dbm(power, power_dbm),
         "rss_coherent_dbm": _dbm(np.where(reached, np.abs(sums.field) ** 2, 0.0), power_dbm),
@@ -90,7 +89,7 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
         "mean_delay_s": np.where(reached, straight_m + mean[:, EXCESS], 0.0) / SPEED_OF_LIGHT,
         "delay_spread_s": np.where(reached, np.sqrt(variance), 0.0) / SPEED_OF_LIGHT,
         "angular_spread": np.where(reached, np.sqrt(np.maximum(1.0 - focus, 0.0)), 0.0),
-        "k_factor_db": _ratio_db(strongest, rest),
+        "k_factor_db": k_factor_db(strongest, power, n_paths),
         "left_out_db": _ratio_db(sums.left_out, power),
     }
 
@@ -101,6 +100,12 @@ def _dbm(power: Floats, power_dbm: float) -> Floats:
     some = power > 0.0
     dbm[some] = power_dbm + 10.0 * np.log10(np.minimum(power[some], 1.0))
     return dbm
+
+
+def k_factor_db(strongest: Floats, power: Floats, n_paths: Floats) -> Floats:
+    """Strongest path over the sum of all others [dB]; inf for a single path, -inf for none."""
+    rest = np.where(n_paths > 1.0, np.maximum(power - strongest, 0.0), 0.0)
+    return _ratio_db(strongest, rest)
 
 
 def _ratio_db(power: Floats, rest: Floats) -> Floats:

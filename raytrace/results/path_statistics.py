@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from raytrace.arrays import Floats, Ints
+from raytrace.results.layers import k_factor_db
 from raytrace.results.paths import Paths
 
 
@@ -77,7 +78,7 @@ class PathStatistics:
             mean_delay_s=mean_s,
             delay_spread_s=np.sqrt(variance),
             angular_spread=np.where(power > 0.0, spread, 0.0),
-            k_factor_db=_k_factor_db(strongest, power, sums.of(paths.weight)),
+            k_factor_db=k_factor_db(strongest, power, sums.of(paths.weight)),
         )
 
 
@@ -100,15 +101,6 @@ class _Sums:
         """Mean (n,) of the paths' values at each receiver, weighted with power; 0 without."""
         total = np.where(self._total > 0.0, self._total, 1.0)
         return self.of(self.power * values) / total
-
-
-def _k_factor_db(strongest: Floats, power: Floats, count: Floats) -> Floats:
-    """Strongest over the rest; -inf where there is nothing, inf where there is one path only."""
-    rest = np.where(count > 1.0, np.maximum(power - strongest, 0.0), 0.0)
-    k_db = np.where(strongest > 0.0, np.inf, -np.inf)
-    some = (strongest > 0.0) & (rest > 0.0)
-    k_db[some] = 10.0 * np.log10(strongest[some] / rest[some])
-    return k_db
 
 
 def _decibels(power: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""Nearly collinear centre lines, put on one line and joined."""
+"""Nearly collinear centre lines, put on one line and joined, before they become walls."""
 
 from __future__ import annotations
 
