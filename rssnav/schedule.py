@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+MAX_RUNS = 1_000_000
+MAX_EPISODES = 10**9
 NO_STEP_LIMIT = int(np.iinfo(np.int64).max)
 
 

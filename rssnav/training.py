@@ -25,7 +25,7 @@ from rssnav.learning_rules import LearningProblem
 from rssnav.optimal_flights import Flight, greedy_path
 from rssnav.progress import Progress
 from rssnav.results import TrainingResult, padded
-from rssnav.schedule import NO_STEP_LIMIT, Schedule
+from rssnav.schedule import MAX_EPISODES, MAX_RUNS, NO_STEP_LIMIT, Schedule
 from rssnav.world import GridWorld
 
 Checkpoint = Callable[[TrainingResult], None]
@@ -168,15 +168,15 @@ def _schedule(
     snapshot_episodes: Sequence[int],
     max_total_steps: int,
 ) -> Schedule:
-    for name, value, least in (
-        ("runs", runs, 1),
-        ("episodes", episodes, 1),
-        ("min_episodes", min_episodes, 1),
-        ("seed", seed, 0),
-        ("max_total_steps", max_total_steps, 1),
+    for name, value, least, most in (
+        ("runs", runs, 1, MAX_RUNS),
+        ("episodes", episodes, 1, MAX_EPISODES),
+        ("min_episodes", min_episodes, 1, MAX_EPISODES),
+        ("seed", seed, 0, NO_STEP_LIMIT),
+        ("max_total_steps", max_total_steps, 1, NO_STEP_LIMIT),
     ):
-        whole = not isinstance(value, bool) and int(value) == value
-        require(whole and value >= least, name, value, f"a whole number of at least {least}")
+        fits = not isinstance(value, bool) and least <= value <= most and int(value) == value
+        require(fits, name, value, f"a whole number of at least {least}, at most {most}")
     guaranteed = min(episodes, min_episodes) if until_converged else episodes
     snapshots = tuple(sorted({int(k) for k in snapshot_episodes if k <= guaranteed}))
     if snapshots:

@@ -232,8 +232,8 @@ def test_wrong_usage_ends_with_2(tmp_path, monkeypatch, arguments, expected) -> 
         (("--tolerance", "1", "--interval", "1"), "not both"),
         (("--agent", "location", "--tolerance", "1"), "use --agent rss"),
         (("--fluctuation", "1"), "ToleranceStates or IntervalStates"),
-        (("--interval", "-1"), "is not in the range 0.001<=x<=1000"),
-        (("--gamma", "1.5"), "is not in the range 0.0<=x<=1.0"),
+        (("--interval", "-1"), "0.001"),
+        (("--gamma", "1.5"), "Invalid value for '--gamma'"),
         (("--agent", "location", "--goal-distance", "0"), "a positive number"),
     ],
 )
