@@ -85,15 +85,15 @@ def format_place(place: Place) -> str:
     return text
 
 
-def unknown_name(kind: str, name: str, known: tuple[str, ...]) -> str:
-    """Describe an unknown name: a similar known one, and the list of known ones.
+def unknown_name(kind: str, name: str, known: tuple[str, ...], meant: str | None = None) -> str:
+    """Describe an unknown name: the known one meant or a similar one, and the list of known ones.
 
     Examples
     --------
     >>> unknown_name("material", "glas", ("glass", "wood"))
     'unknown material; did you mean "glass"? Known: glass, wood'
     """
-    near = get_close_matches(name, known, n=1)
+    near = [meant] if meant in known else get_close_matches(name.casefold(), known, n=1)
     hint = f'; did you mean "{near[0]}"?' if near else "."
     return f"unknown {kind}{hint} Known: {', '.join(known)}"
 

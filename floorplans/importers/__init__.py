@@ -12,6 +12,7 @@ doors and windows to them, finds the outline and gives a default to what the fil
 
 from floorplans.importers.assembly.assemble import assemble
 from floorplans.importers.draft import (
+    Assumption,
     Draft,
     ImportOptions,
     LayerUse,
@@ -20,7 +21,7 @@ from floorplans.importers.draft import (
     RawWall,
 )
 from floorplans.importers.formats import FORMATS, import_plan, read_draft
-from floorplans.importers.imported import Assumption, Imported
+from floorplans.importers.imported import Imported
 
 __all__ = [
     "FORMATS",

@@ -16,3 +16,9 @@ DOOR_MATERIAL, DOOR_THICKNESS_M = "wood", 0.04
 WINDOW_SILL_M = 0.9
 WINDOW_HEAD_M = 2.1
 WINDOW_MATERIAL, WINDOW_THICKNESS_M = "glass", 0.02
+
+
+def wall_material_of(thickness_m: float | None) -> str:
+    """Material of a wall or a layer of it whose material is unknown."""
+    thick = thickness_m is not None and thickness_m >= THICK_M
+    return THICK_WALL_MATERIAL if thick else WALL_MATERIAL

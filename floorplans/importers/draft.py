@@ -14,6 +14,7 @@ from math import hypot, radians, sin
 from shapely.geometry import LineString, Polygon
 
 from floorplans.georeference import GeoOrigin
+from floorplans.materials import PlanMaterial
 from floorplans.walls import OpeningKind, Point
 
 _MAX_SINE = sin(radians(20.0))
@@ -169,6 +170,15 @@ class LayerUse:
 
 
 @dataclass(frozen=True)
+class Assumption:
+    """A value that the file did not give: its key, the value as text, and the reason."""
+
+    key: str
+    value: str
+    why: str
+
+
+@dataclass(frozen=True)
 class Origin:
     """Position of the plan's (0, 0) in the file's coordinates, and what those are."""
 
@@ -197,6 +207,10 @@ class Draft:
     georeference : GeoOrigin or None
         Where on the Earth the draft's (0, 0) lies; None if unknown.
     layers : tuple of LayerUse
+    materials : tuple of PlanMaterial
+        Materials that walls may name besides the built-in ones.
+    assumed : tuple of Assumption
+        What the reader took for granted.
     notes : tuple of str
         Further information for the user, one sentence each.
     """
@@ -211,4 +225,6 @@ class Draft:
     origin: Origin | None = None
     georeference: GeoOrigin | None = None
     layers: tuple[LayerUse, ...] = ()
+    materials: tuple[PlanMaterial, ...] = ()
+    assumed: tuple[Assumption, ...] = ()
     notes: tuple[str, ...] = ()

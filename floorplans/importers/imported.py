@@ -4,19 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from floorplans.importers.draft import ImportOptions, LayerUse, Origin
+from floorplans.importers.draft import Assumption, ImportOptions, LayerUse, Origin
 from floorplans.plan import FloorPlan
 from floorplans.repair.walls import Change
 from floorplans.toml.writer import dumps
-
-
-@dataclass(frozen=True)
-class Assumption:
-    """A value that the file did not give: its key, the value as text, and the reason."""
-
-    key: str
-    value: str
-    why: str
 
 
 @dataclass(frozen=True)

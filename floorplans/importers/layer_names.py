@@ -1,71 +1,85 @@
 """The meaning of layers, blocks and types from their names.
 
-Names are split into words at everything but letters, and at changes from lower to upper case; a
-word decides if it begins with one of those below. The words are those of the AIA and ISO 13567
-layer lists and of common drawings in English, German, French, Spanish, Italian, Portuguese, Dutch,
-Swedish, Polish and Turkish.
+The words are those of the AIA, NCS and ISO 13567 layer lists and of common drawings in English,
+German, French, Spanish, Italian, Portuguese, Dutch, Swedish, Norwegian, Danish, Finnish, Polish,
+Czech, Turkish and Russian. How a word matches is described in `material_names`.
 """
 
 from __future__ import annotations
 
-import re
-import unicodedata
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from typing import Literal, TypeVar, get_args
 
 from floorplans.errors import PlanError, unknown_name
+from floorplans.importers.material_names import (
+    Lists,
+    first_match,
+    full_name,
+    matches,
+    material_named,
+    words_of,
+)
 from floorplans.materials import MATERIALS
 
-T = TypeVar("T")
-Kind = Literal["wall", "door", "window", "ignore"]
+Kind = Literal["wall", "door", "window", "passage", "ignore"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
-_WORDS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
+T = TypeVar("T")
+
+_WORDS: Lists[Kind] = (
     ("ignore", (
-        "furn", "mobel", "moebel", "meubl", "mueble", "mobil", "text", "txt", "dim", "anno",
-        "hatch", "schraff", "defpoint", "viewport", "vport", "title", "demol", "label",
+        "furn", "mobel", "moebel", "meubl", "mueble", "mobil", "arred", "text", "txt", "dim",
+        "anno", "hatch", "schraff", "defpoint", "viewport", "vport", "title", "ttlb", "demo ",
+        "demol", "label", "iden ", "nplt ", "note ", "notes ", "void", "cote ", "cotes ", "cotat",
+        "bemass", "acot", "skyl", "tremie", "overhead", "ovhd", "abov ", "above ",
     )),
     ("door", (
-        "door", "tur", "tuer", "porte ", "porta ", "portes ", "puert", "deur", "dorr", "drzwi",
-        "kapi", "gate",
+        "door", "tur ", "turen ", "turbl", "turzarg", "*haustur", "*innentur", "*zimmertur",
+        "*aussentur", "*schiebetur", "*eingangstur", "tuer", "*tuer ", "*tueren ", "tor ", "tore ",
+        "porte ", "porta ", "portes ", "portas ", "huisser", "menuis", "puert", "carpint", "infiss",
+        "serrament", "esquadr", "deur", "kozijn", "dorr", "dor ", "dore ", "ovi ", "ovet ", "drzwi",
+        "dvere", "kapi", "двер", "gate",
     )),
     ("window", (
-        "window", "wind", "wdw", "wndw", "fenst", "fenet", "ventan", "finest", "janel", "raam",
-        "ramen", "fonst", "okn", "pencer",
+        "window", "wind ", "wdw", "wndw", "fenst", "*fenster", "fenet", "ventan", "finest", "janel",
+        "raam", "ramen", "fonst", "vindu", "ikkun", "okn", "pencer", "окн", "окон",
+    )),
+    ("passage", (
+        "opening", "opng", "offnung", "*offnung", "oeffnung", "*oeffnung", "*durchbr", "durchgang",
+        "ouvertur", "baie ", "baies ", "hueco", "vano ", "vanos ", "apertur", "abertur", "passage ",
+        "sparing", "oppning", "проем",
     )),
     ("wall", (
-        "wall", "wand", "waend", "mur", "pared", "paret", "muur", "vagg", "scian", "duvar", "mauer",
-        "cloison", "tabiqu", "partit", "trennw", "aussenw", "innenw", "column", "cols", "stutz",
-        "stuetz", "pilar", "pilast", "kolom", "poteau",
+        "wall", "wand", "*wand ", "waend", "*waende ", "*wande ", "*mauer ", "mauer", "mur",
+        "refend", "voile ", "voiles ", "cloison", "pared", "paret", "tabiqu", "tramez", "alvenar",
+        "muur", "vagg", "vegg", "vaeg", "seina", "scian", "stena", "steny", "duvar", "стен",
+        "partit", "column", "coluna", "colon ", "cols", "pillar", "pfeil", "stutz", "stuetz",
+        "pilar", "pilast", "kolom", "kolon", "poteau",
     )),
+    ("window", ("glaz", "vitr", "verri")),
     ("ignore", (
         "sheet", "frame", "grid", "axis", "axe", "achs", "patt", "symb", "plant", "tree", "san ",
         "sanit", "plumb", "fixt", "equip", "light", "elec", "hvac", "duct", "pipe", "stair",
         "trepp", "escal", "floor", "boden", "ceil", "decke", "roof", "dach", "area", "room", "raum",
-        "space", "zone", "overhead", "ovhd", "rail", "appl", "cabinet", "casework", "logo", "clng",
-        "flor", "evtr", "lift",
+        "space", "zone", "rail", "appl", "cabinet", "casework", "logo", "clng", "flor", "evtr",
+        "lift",
     )),
 )  # fmt: skip
-"""The first match decides: a prefix of a word, or with a trailing space a whole word."""
+"""The first match decides."""
 
-_MATERIAL_WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
-    ("concrete", ("conc", "beton", "hormig", "calcest", "stahlb")),
-    ("brick", (
-        "brick", "mason", "masonr", "mauerw", "ziegel", "briq", "ladrill", "matton", "cmu",
-        "bakst", "tijol", "kalksand",
-    )),
-    ("plasterboard", (
-        "plaster", "gyps", "gips", "dryw", "placo", "putz", "cartong", "yeso", "gkb", "trockenb",
-    )),
-    ("glass", ("glas", "glaz", "verre", "vidri", "vetro", "curtain", "szkl")),
-    ("wood", ("wood", "timber", "holz", "bois", "mader", "legno", "hout")),
-    ("metal", ("metal", "steel", "stahl", "acier", "acero", "alumin", "acciaio", "staal")),
+_HORIZONTAL = (
+    "floor", "flor ", "roof", "shaft", "slab", "ceil", "clng", "deck", "stair", "boden", "dach",
+    "schacht", "trepp", "plancher", "dalle", "toit", "forjad", "cubiert", "solaio", "tetto", "laje",
+    "vloer", "dak ",
 )  # fmt: skip
-
-_PLAIN = str.maketrans({"ß": "ss", "ł": "l", "ı": "i", "ø": "o"})
-"""Letters that decomposition does not reduce to ASCII."""
+"""An opening of these is a hole in a floor or ceiling."""
+_ROOF = ("roof", "dachf", "dach ", "toit", "tetto")
+_FOUNDATION = (
+    "stem ", "fndn", "foundation", "footing", "fundam", "fondation", "cimient", "fundac",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -88,6 +102,7 @@ def meaning_of(name: str, layers: Mapping[str, str] | None = None) -> Meaning:
     Returns
     -------
     Meaning
+        Openings in floors and roofs are "ignore"; foundation walls are None.
 
     Raises
     ------
@@ -98,31 +113,52 @@ def meaning_of(name: str, layers: Mapping[str, str] | None = None) -> Meaning:
     --------
     >>> meaning_of("A-WALL-CONC")
     Meaning(kind='wall', material='concrete')
-    >>> meaning_of("Türen").kind, meaning_of("cotes").kind
+    >>> meaning_of("Türen").kind, meaning_of("portrait").kind
     ('door', None)
+    >>> meaning_of("A-OPENING").kind, meaning_of("floor_opening").kind
+    ('passage', 'ignore')
     """
     chosen = meaning_in(layers or {}, name, KINDS)
     if chosen is not None:
         return Meaning(*chosen)
-    words = _words(name)
-    material = _first(words, _MATERIAL_WORDS)
-    kind: Kind | None = _first(words, _WORDS)
+    words = words_of(name)
+    material = material_named(name)
+    kind = _kind_of(words)
+    if kind == "wall" and is_foundation(name):
+        return Meaning(None)
     if kind == "wall":
-        return Meaning("wall", _named_material(words) or material)
+        return Meaning("wall", full_name(words) or material)
     if kind is None and material is not None:
         return Meaning("wall", material)
     return Meaning(kind)
 
 
-def material_named(name: str) -> str | None:
-    """Material that a name refers to; None if it contains no known one.
+def is_horizontal_opening(name: str) -> bool:
+    """Whether a name is that of an opening in a floor, a roof or a shaft, and not in a wall.
 
     Examples
     --------
-    >>> material_named("Stahlbeton C30/37"), material_named("Luft")
-    ('concrete', None)
+    >>> is_horizontal_opening("roof_opening"), is_horizontal_opening("Ground floor doors")
+    (True, False)
     """
-    return _first(_words(name), _MATERIAL_WORDS)
+    words = words_of(name)
+    kind = first_match(words, _WORDS)
+    in_slab = kind == "passage" and matches(words, _HORIZONTAL)
+    return in_slab or (kind == "window" and matches(words, _ROOF)) or matches(words, ("void",))
+
+
+def is_foundation(name: str) -> bool:
+    """Whether a name is that of a foundation, which lies below the floor of a storey."""
+    return matches(words_of(name), _FOUNDATION)
+
+
+def _kind_of(words: list[str]) -> Kind | None:
+    kind: Kind | None = first_match(words, _WORDS)
+    if is_horizontal_opening(" ".join(words)):
+        return "ignore"
+    if kind == "window" and words[0] == "i" and matches(words, ("glaz",)):
+        return None  # NCS discipline Interiors: a glazed partition, and so a wall of its material
+    return kind
 
 
 def meaning_in(
@@ -133,7 +169,8 @@ def meaning_in(
     Raises
     ------
     PlanError
-        When the mapping names an unknown kind or material for it.
+        When the mapping names an unknown kind or material for it, with the nearest known one by
+        its meaning or its letters.
     """
     for pattern, text in layers.items():
         if fnmatchcase(name.casefold(), pattern.casefold()):
@@ -143,36 +180,25 @@ def meaning_in(
 
 def _parse_meaning(text: str, pattern: str, kinds: Sequence[T]) -> tuple[T, str | None]:
     """Parse KIND or KIND:MATERIAL."""
-    kind_text, _, material = text.partition(":")
+    kind_text, _, material = (part.strip() for part in text.partition(":"))
     by_name = {str(kind): kind for kind in kinds}
-    kind = by_name.get(kind_text.strip())
+    kind = by_name.get(kind_text)
     if kind is None:
-        problem = unknown_name("kind of layer", kind_text, tuple(by_name))
+        meant = meaning_of(kind_text).kind
+        problem = unknown_name("kind of layer", kind_text, tuple(by_name), meant)
         raise PlanError(problem, ("layers", pattern), text)
-    material = material.strip() or None
-    if material is not None and material not in MATERIALS:
-        raise PlanError(unknown_name("material", material, MATERIALS), ("layers", pattern), text)
-    return kind, material
+    if material and material not in MATERIALS:
+        problem = unknown_name("material", material, MATERIALS, material_named(material))
+        raise PlanError(problem, ("layers", pattern), text)
+    return kind, material or None
 
 
-def _words(name: str) -> list[str]:
-    """Words of a name in lower case without accents."""
-    spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
-    plain = unicodedata.normalize("NFKD", spaced.translate(_PLAIN))
-    letters = "".join(c for c in plain if not unicodedata.combining(c))
-    return re.findall(r"[a-z]+", letters.casefold())
-
-
-def _named_material(words: list[str]) -> str | None:
-    """Return the material whose full name is among the words; the longest if several."""
-    text = f" {' '.join(words)} "
-    named = [name for name in MATERIALS if f" {name.replace('_', ' ')} " in text]
-    return max(named, key=len, default=None)
-
-
-def _first(words: list[str], lists: tuple[tuple[T, tuple[str, ...]], ...]) -> T | None:
-    """Return the first value for which a word has one of the beginnings."""
-    for value, beginnings in lists:
-        if any(f"{word} ".startswith(beginnings) for word in words):
-            return value
-    return None
+def unmatched(layers: Mapping[str, str], names: Iterable[str]) -> Iterator[str]:
+    """Yield a sentence for each name of the user's mapping that matches none of the file's."""
+    folded = {name.casefold(): name for name in names}
+    for pattern in layers:
+        if any(fnmatchcase(name, pattern.casefold()) for name in folded):
+            continue
+        near = get_close_matches(pattern.casefold(), folded, n=1)
+        hint = f'; did you mean "{folded[near[0]]}"?' if near else ""
+        yield f'nothing in the file is called "{pattern}"{hint}'

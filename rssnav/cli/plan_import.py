@@ -221,9 +221,10 @@ def _report(imported: Imported, output: Path, as_json: bool) -> None:
 
 
 def _print_layer_option(imported: Imported) -> None:
-    unknown = [use.name for use in imported.layers if use.is_unknown]
+    unknown = [use for use in imported.layers if use.is_unknown]
     if unknown:
-        say(f"layers of unknown names are walls with, for example, --layer '{unknown[0]}=wall'")
+        largest = max(unknown, key=lambda use: use.n_objects)
+        say(f"layers of unknown names are walls with, for example, --layer '{largest.name}=wall'")
 
 
 def _print_changes(changes: tuple[Change, ...]) -> None:

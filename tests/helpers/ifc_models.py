@@ -172,6 +172,25 @@ class Model:
             self.file, products=[element], type="IfcMaterialLayerSetUsage", material=layer_set
         )
 
+    def set_constituents(self, element, *layers: tuple[str, float]) -> None:
+        """Give an element materials whose widths are quantities, as reference views do."""
+        f = self.file
+        them = material.add_material_set(f, "wall", "IfcMaterialConstituentSet")
+        parts = []
+        for k, (name, thickness_m) in enumerate(layers):
+            one = material.add_material(f, name=name)
+            part = material.add_constituent(f, constituent_set=them, material=one)
+            part.Name = f"Layer{k}"
+            width = f.createIfcQuantityLength("Width", None, None, thickness_m * self.metre)
+            parts.append(f.createIfcPhysicalComplexQuantity(part.Name, None, [width], "layer"))
+        quantities = f.createIfcElementQuantity(
+            ifcopenshell.guid.new(), None, "Qto", Quantities=parts
+        )
+        f.createIfcRelDefinesByProperties(
+            ifcopenshell.guid.new(), RelatedObjects=[element], RelatingPropertyDefinition=quantities
+        )
+        material.assign_material(f, products=[element], material=them)
+
     def set_material(self, element, name: str) -> None:
         one = material.add_material(self.file, name=name)
         material.assign_material(self.file, products=[element], material=one)

@@ -31,10 +31,11 @@ from floorplans.importers.defaults import (
     WINDOW_MATERIAL,
     WINDOW_SILL_M,
     WINDOW_THICKNESS_M,
+    wall_material_of,
 )
-from floorplans.importers.draft import Draft, ImportOptions, Origin, RawOpening, RawWall
-from floorplans.importers.imported import Assumption, Imported
-from floorplans.materials import MATERIALS
+from floorplans.importers.draft import Assumption, Draft, ImportOptions, Origin, RawOpening
+from floorplans.importers.imported import Imported
+from floorplans.materials import MATERIALS, PlanMaterial
 from floorplans.plan import FloorPlan
 from floorplans.repair.collinear import merge_lines
 from floorplans.repair.geometry import DECIMALS, Change, tidy_point
@@ -89,6 +90,7 @@ def assemble(draft: Draft, options: ImportOptions, source_file: str) -> Imported
         source=options.source or (*places.source, min(SOURCE_HEIGHT_M, height_m / 2)),
         start=options.start or places.start,
         origin=draft.georeference,
+        materials=_used(draft, building.walls),
     )
     return Imported(
         plan=plan,
@@ -135,18 +137,13 @@ def _walls(draft: Draft, options: ImportOptions, height_m: float) -> tuple[Wall,
         Wall(
             start=tidy_point(*raw.start),
             end=tidy_point(*raw.end),
-            material=raw.material or options.wall_material or _default_wall_material(raw),
+            material=raw.material or options.wall_material or wall_material_of(raw.thickness_m),
             thickness_m=round(raw.thickness_m or options.wall_thickness_m or WALL_THICKNESS_M, 4),
             height_m=min(raw.height_m or height_m, height_m),
         )
         for raw in draft.walls
     )
     return tuple(wall for wall in walls if wall.length_m > TOLERANCE_M)
-
-
-def _default_wall_material(raw: RawWall) -> str:
-    thick = raw.thickness_m is not None and raw.thickness_m >= THICK_M
-    return THICK_WALL_MATERIAL if thick else WALL_MATERIAL
 
 
 def _building(
@@ -190,6 +187,12 @@ def _moved(
     )
 
 
+def _used(draft: Draft, walls: Sequence[Wall]) -> tuple[PlanMaterial, ...]:
+    """Materials of a draft that the walls are made of."""
+    names = {wall.material for wall in walls}
+    return tuple(material for material in draft.materials if material.name in names)
+
+
 def _places(building: _Building, options: ImportOptions, height_m: float) -> SourceAndStart:
     source = options.source[:2] if options.source is not None else None
     if options.source is not None and options.start is not None:
@@ -213,6 +216,7 @@ def _assumptions(
     if options.start is None:
         why = f"the cell with the longest walk from the source, {places.distance_m:.0f} m"
         yield Assumption("start", f"{list(plan.start)}", why)
+    yield from draft.assumed
     yield from _wall_assumptions(draft, options)
     yield from _opening_assumptions(draft)
 

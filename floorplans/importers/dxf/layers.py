@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from floorplans.errors import PlanError
 from floorplans.importers.draft import LayerUse
 from floorplans.importers.dxf.drawing import Content
-from floorplans.importers.layer_names import Kind, Meaning, meaning_of
+from floorplans.importers.layer_names import Kind, Meaning, is_foundation, meaning_of
 
 
 @dataclass(frozen=True)
@@ -39,13 +39,13 @@ class Layers:
         )
 
     def _is_unknown(self, name: str) -> bool:
-        return self.meanings[name].kind is None
+        return self.meanings[name].kind is None and not is_foundation(name)
 
     def _became(self, name: str) -> str:
         meaning = self.meanings[name]
         n_symbols = sum(symbol.layer == name for symbol in self.content.symbols)
         parts: list[str] = []
-        if meaning.kind in ("wall", "door", "window") and self.content.curves.get(name):
+        if meaning.kind not in (None, "ignore") and self.content.curves.get(name):
             of = f" of {meaning.material}" if meaning.material else ""
             parts.append(f"{meaning.kind}s{of}")
         if n_symbols:
@@ -77,7 +77,7 @@ def layers_of(content: Content, given: Mapping[str, str]) -> Layers:
         if name in content.hidden and name not in given:
             meanings[name], why[name] = Meaning("ignore"), "off or frozen in the drawing"
         elif meanings[name].kind is None:
-            why[name] = "unknown name"
+            why[name] = "a foundation" if is_foundation(name) else "unknown name"
     layers = Layers(meanings, content, why)
     if not layers.of("wall"):
         unknown = {n for n, m in meanings.items() if m.kind is None and content.curves.get(n)}
@@ -91,9 +91,10 @@ def layers_of(content: Content, given: Mapping[str, str]) -> Layers:
 def _no_walls(content: Content) -> PlanError:
     if not content.n_objects:
         return PlanError("the drawing is empty: nothing is in its model space")
-    names = ", ".join(f"{name!r}" for name in sorted(content.n_objects)[:20])
+    names = [name for name, _ in content.n_objects.most_common(20)]
+    likely = max(names, key=lambda name: len(content.curves.get(name, ())))
     return PlanError(
-        "no lines of walls were found; say which layers hold them, such as NAME=wall; "
-        f"layers with objects: {names}",
+        f"no lines of walls were found; say which layers hold them, such as {likely}=wall; "
+        f"layers with objects: {', '.join(map(repr, names))}",
         remedy="layers",
     )

@@ -40,6 +40,7 @@ from floorplans.importers.dxf.openings import (
     opening_of_swing,
     openings_of_symbol,
 )
+from floorplans.importers.layer_names import unmatched
 from floorplans.importers.units import UNITS, check_size, guess_unit, unit_length
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
         walls=tuple(walls),
         openings=tuple(openings),
         layers=layers.uses(),
-        notes=(f"unit {unit}, as {stated_by}",),
+        notes=(f"unit {unit}, as {stated_by}", *unmatched(options.layers, content.n_objects)),
     )
 
 
@@ -260,9 +261,12 @@ def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> l
 def _loose_openings(
     content: Content, layers: Layers, area: BaseGeometry
 ) -> tuple[list[RawOpening], list[LineString]]:
-    """Openings of window and door lines that lie in a wall or its gap, and the other lines."""
+    """Openings of lines that lie in a wall or its gap, and the other lines of windows and doors."""
     openings: list[RawOpening] = []
     glass: list[LineString] = []
+    for layer in layers.of("passage"):
+        found = [cluster.opening for cluster in loose_lines(content.curves[layer], "door")]
+        openings += [o for o in found if o is not None and _is_in_wall(o, area)]
     for layer in (*layers.of("window"), *layers.of("door")):
         curves = content.curves[layer]
         leaves = [curve.swing for curve in curves if curve.swing is not None]

@@ -14,7 +14,8 @@ from math import isfinite
 from typing import Any, Literal, cast, get_args
 
 from floorplans.importers.draft import ImportOptions
-from floorplans.importers.layer_names import meaning_in, meaning_of
+from floorplans.importers.layer_names import is_horizontal_opening, meaning_in, meaning_of
+from floorplans.importers.material_names import material_named, words_of
 from floorplans.materials import MATERIALS
 
 Kind = Literal["wall", "door", "window", "passage", "room", "outline", "level", "ignore"]
@@ -37,10 +38,19 @@ WORDS: Mapping[str, Kind] = {
     "space": "room", "hall": "room", "office": "room", "walkway": "room", "hallway": "room",
     "outline": "outline", "footprint": "outline", "perimeter": "outline", "building": "outline",
     "level": "level", "floor": "level", "storey": "level", "story": "level",
+    "amenity": "ignore", "anchor": "ignore", "address": "ignore", "detail": "ignore",
+    "geofence": "ignore", "kiosk": "ignore", "occupant": "ignore", "relationship": "ignore",
+    "section": "ignore", "venue": "ignore",
 }  # fmt: skip
 """Last word of a name (building_outline, exterior-wall) -> what it is."""
 
 LEVEL_KEYS = ("level", "level_id", "levelId", "level_name", "floor", "storey", "building_level")
+
+WALL_UNITS: Mapping[str, str | None] = {
+    "structure": None, "wall": None, "column": None, "brick": "brick", "concrete": "concrete",
+    "drywall": "plasterboard", "glass": "glass", "wood": "wood",
+}  # fmt: skip
+"""Categories of IMDF that are solid -> material."""
 
 OPEN_UNITS = frozenset({"walkway", "corridor", "hallway", "opentobelow", "lobby", "area"})
 """Rooms of these categories have no wall where they adjoin each other."""
@@ -118,8 +128,8 @@ def properties_of(feature: Json) -> Json:
 
 def _imdf(feature_type: str, category: str, material: str | None) -> FeatureClass:
     label = f"{feature_type}/{category}" if category else feature_type
-    if category in ("structure", "wall"):
-        return FeatureClass("wall", label, material)
+    if category in WALL_UNITS:
+        return FeatureClass("wall", label, material or WALL_UNITS[category])
     kind = "room" if feature_type == "unit" else None
     return FeatureClass(kind, label, material, category in OPEN_UNITS)
 
@@ -133,9 +143,11 @@ def _osm_words(properties: Json) -> list[str]:
 
 
 def _kind_of(word: str) -> Kind | None:
-    parts = re.findall(r"[a-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower())
-    if not parts or parts[-1] in WORDS:
-        return WORDS[parts[-1]] if parts else None
+    if is_horizontal_opening(word):
+        return "ignore"
+    last = words_of(word)[-1:]
+    if last and last[0] in WORDS:
+        return WORDS[last[0]]
     kind = meaning_of(word).kind
     return None if kind == "ignore" else kind
 
@@ -146,7 +158,7 @@ def _texts(value: object) -> list[str]:
 
 def _material(properties: Json) -> str | None:
     name = str(properties.get("material", "")).strip().lower()
-    return name if name in MATERIALS else None
+    return name if name in MATERIALS else material_named(name)
 
 
 def _level_names(text: str) -> list[str]:

@@ -19,6 +19,7 @@ from floorplans.importers.geojson.files import Collection, read_collection
 from floorplans.importers.geojson.frame import geometry_of, to_metres
 from floorplans.importers.geojson.levels import on_level
 from floorplans.importers.geojson.walls import Placed, openings_of, walls_of
+from floorplans.importers.layer_names import is_horizontal_opening, unmatched
 from floorplans.plan import FloorPlan
 
 TOLERANCE_M = 0.05
@@ -61,6 +62,7 @@ def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
         origin=None if origin is None else _named(origin),
         georeference=origin,
         layers=tuple(_uses(placed, classes)),
+        notes=tuple(unmatched(options.layers, {what.label for what in classes})),
     )
 
 
@@ -101,12 +103,13 @@ def _uses(placed: Sequence[Placed], classes: Sequence[FeatureClass]) -> list[Lay
     total = Counter((what.label, what.kind) for what in classes)
     here = Counter((p.what.label, p.what.kind) for p in placed)
     return [
-        LayerUse(label, n, _became(kind, here[label, kind], n), is_unknown=kind is None)
+        LayerUse(label, n, _became(label, kind, here[label, kind], n), is_unknown=kind is None)
         for (label, kind), n in sorted(total.items(), key=lambda item: item[0][0])
     ]
 
 
-def _became(kind: str | None, n_here: int, n_total: int) -> str:
+def _became(label: str, kind: str | None, n_here: int, n_total: int) -> str:
     if kind not in _USED:
-        return "left out"
+        in_slab = kind == "ignore" and is_horizontal_opening(label)
+        return "left out (in a floor or roof, not in a wall)" if in_slab else "left out"
     return f"{kind}" if n_here == n_total else f"{kind}; {n_total - n_here} on other levels"

@@ -118,7 +118,7 @@ def _storeys(model: Model, metre: float) -> list[Storey]:
     found = [
         Storey(
             entity,
-            entity.LongName or entity.Name or "",
+            entity.Name or entity.LongName or "",
             metre * float(placement_of(entity)[2, 3]),
             tuple(sorted(get_decomposition(entity, is_recursive=True), key=lambda e: e.id())),
         )

@@ -1,7 +1,7 @@
 """IFC models -> drafts of plans, one storey at a time.
 
 Walls are read from their bodies (the middle of the footprint) and, where they are curved, from
-their axes; their thickness and material from their layers, otherwise from the body. What voids a
+their axes; their thickness and materials from their layers, otherwise from the body. What voids a
 wall is an opening: a door or window if one fills it, otherwise a passage. Slabs and ceilings above
 give the height. Needs ifcopenshell.
 """
@@ -23,9 +23,10 @@ from floorplans.georeference import GeoOrigin
 from floorplans.importers.draft import Draft, ImportOptions, LayerUse, RawOpening
 from floorplans.importers.ifc.curves import Entity
 from floorplans.importers.ifc.file import Model, Storey, open_model, scale_of, storey_of
-from floorplans.importers.ifc.materials import dominant_material, layer_count
+from floorplans.importers.ifc.materials import Materials
 from floorplans.importers.ifc.shapes import Body, Scale, bodies
 from floorplans.importers.ifc.walls import ReadWall, read_filling, read_wall
+from floorplans.importers.layer_names import unmatched
 from floorplans.values import MAX_WALLS
 
 _DAMAGED = (
@@ -77,7 +78,8 @@ def _read_storey(model: Model, path: Path, options: ImportOptions) -> Draft:
     if len(storey.walls) > MAX_WALLS:
         raise PlanError(f"{len(storey.walls)} walls, more than the {MAX_WALLS} of one storey")
     floor_m = storey.elevation_m
-    read = [read_wall(wall, floor_m, scale, options.layers) for wall in storey.walls]
+    materials = Materials(scale.metre, options.layers, options.wall_material)
+    read = [read_wall(wall, floor_m, scale, materials) for wall in storey.walls]
     walls = [wall for wall in read if wall is not None]
     slabs = _slabs(model, storey, scale)
     height_m = options.height_m or _ceiling(slabs, floor_m) or _highest(walls)
@@ -98,11 +100,13 @@ def _read_storey(model: Model, path: Path, options: ImportOptions) -> Draft:
         ),
         openings=tuple(_within(loose, walls, height_m)),
         height_m=height_m,
-        floor_material=_material(floor, scale, options),
-        ceiling_material=_material(ceiling, scale, options),
+        floor_material=None if floor is None else materials.of_slab(floor),
+        ceiling_material=None if ceiling is None else materials.of_slab(ceiling),
         georeference=_georeference(model),
+        notes=tuple(unmatched(options.layers, materials.names)),
         layers=tuple(_uses(storey, read)),
-        notes=tuple(_notes(storey)),
+        materials=materials.own,
+        assumed=tuple(materials.assumed()),
     )
 
 
@@ -175,10 +179,6 @@ def _fills_nothing(element: Entity) -> bool:
     return (element.is_a("IfcDoor") or element.is_a("IfcWindow")) and not element.FillsVoids
 
 
-def _material(element: Entity | None, scale: Scale, options: ImportOptions) -> str | None:
-    return None if element is None else dominant_material(element, scale.metre, options.layers)[0]
-
-
 def _georeference(model: Model) -> GeoOrigin | None:
     """Place of the model's origin, if its site states one."""
     sites = [s for s in model.by_type("IfcSite") if s.RefLatitude and s.RefLongitude]
@@ -217,12 +217,3 @@ _BECAME = {
     "IfcSlab": "the heights of floor and ceiling",
     "IfcCovering": "the height of the ceiling",
 }
-
-
-def _notes(storey: Storey) -> Iterator[str]:
-    n_layered = sum(layer_count(wall) > 1 for wall in storey.walls)
-    if n_layered:
-        yield (
-            f"{n_layered} walls have several layers: each wall has their total thickness and "
-            "the material of its thickest known layer"
-        )

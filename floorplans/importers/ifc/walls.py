@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import hypot
@@ -17,7 +17,7 @@ from floorplans.importers.centrelines.areas import walls_of_area
 from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import RawOpening, RawWall
 from floorplans.importers.ifc.curves import Entity
-from floorplans.importers.ifc.materials import dominant_material
+from floorplans.importers.ifc.materials import Materials
 from floorplans.importers.ifc.shapes import Body, Scale, axis_points, bodies, placement_of
 from floorplans.walls import OpeningKind
 
@@ -43,9 +43,7 @@ class ReadWall:
     top_m: float
 
 
-def read_wall(
-    wall: Entity, floor_m: float, scale: Scale, layers: Mapping[str, str]
-) -> ReadWall | None:
+def read_wall(wall: Entity, floor_m: float, scale: Scale, materials: Materials) -> ReadWall | None:
     """Read a wall; None if it has neither body nor axis, or does not stand on this floor.
 
     Parameters
@@ -54,8 +52,8 @@ def read_wall(
     floor_m : float
         Elevation of the storey [m].
     scale : Scale
-    layers : mapping of str to str
-        Meanings of materials that the user gives.
+    materials : Materials
+        Those of the model.
     """
     parts = _bodies_of_parts(wall, scale)
     top_m = max((body.z_max - floor_m for body in parts), default=np.inf)
@@ -64,7 +62,7 @@ def read_wall(
         return None
     axis = axis_points(wall, scale)
     footprint = shapely.union_all([body.footprint for body in parts])
-    material, layers_m = dominant_material(wall, scale.metre, layers)
+    material, layers_m = materials.of_wall(wall)
     if wall.is_a("IfcCurtainWall"):
         material, layers_m = material or WINDOW_MATERIAL, layers_m or WINDOW_THICKNESS_M
     lines = list(_centre_lines(axis, footprint, layers_m, scale.chord_m))

@@ -246,6 +246,42 @@ def test_layers_that_are_off_are_left_out(tmp_path: Path):
         ("PORTE", Meaning("door")),
         ("A-WINDOW", Meaning("window")),
         ("Fenêtres", Meaning("window")),
+        ("A-WALL-FULL-N", Meaning("wall")),
+        ("S-COLS", Meaning("wall")),
+        ("A-GLAZ", Meaning("window")),
+        ("A-GLAZ-SILL", Meaning("window")),
+        ("A-WALL-GLAZ", Meaning("wall", "glass")),
+        ("A-DOOR-FULL", Meaning("door")),
+        ("A-DOOR-IDEN", Meaning("ignore")),
+        ("A-OPENING", Meaning("passage")),
+        ("S-STEM-WALL", Meaning(None)),
+        ("A-FLOR-OVHD", Meaning("ignore")),
+        ("A-WALL-DEMO", Meaning("ignore")),
+        ("Mauerwerk", Meaning("wall", "brick")),
+        ("Stützmauer", Meaning("wall")),
+        ("Ständerwand", Meaning("wall")),
+        ("Haustüren", Meaning("door")),
+        ("TÜRKIS", Meaning(None)),
+        ("Struktur", Meaning(None)),
+        ("Dachfenster", Meaning("ignore")),
+        ("Wandöffnungen", Meaning("passage")),
+        ("Deckenöffnung", Meaning("ignore")),
+        ("mur", Meaning("wall")),
+        ("Cloisons", Meaning("wall")),
+        ("Menuiseries", Meaning("door")),
+        ("Trémie", Meaning("ignore")),
+        ("muro de ladrillo", Meaning("wall", "brick")),
+        ("PAREDES", Meaning("wall")),
+        ("puertas", Meaning("door")),
+        ("ventanas", Meaning("window")),
+        ("Hueco", Meaning("passage")),
+        ("Pareti", Meaning("wall")),
+        ("Væg", Meaning("wall")),
+        ("Стены", Meaning("wall")),
+        ("floor_opening", Meaning("ignore")),
+        ("roof_opening", Meaning("ignore")),
+        ("ShaftOpening", Meaning("ignore")),
+        ("AIR", Meaning(None)),
         ("DoorText", Meaning("ignore")),
         ("A-FURN", Meaning("ignore")),
         ("Ground floor walls", Meaning("wall")),
@@ -262,12 +298,49 @@ def test_names_of_layers_in_many_languages(name: str, meaning: Meaning):
     [
         ({"x": "wal"}, 'layers.x = "wal": unknown kind of layer; did you mean "wall"?'),
         ({"*": "wall:gold"}, "unknown material"),
+        ({"x": "wall:steel"}, 'unknown material; did you mean "metal"?'),
+        ({"x": "wall:drywall"}, 'unknown material; did you mean "plasterboard"?'),
+        ({"x": "Tür"}, 'unknown kind of layer; did you mean "door"?'),
     ],
 )
 def test_wrong_meanings_are_reported(layers: dict[str, str], said: str, tmp_path: Path):
     doc = draw.flat_of_bodies()
     draw.add_rings(doc.modelspace(), [draw.rectangle(1, 1, 2, 2)], "x")
     assert said in refusal(doc, tmp_path, layers=layers)
+
+
+def test_a_layer_the_user_misspells_is_reported(tmp_path: Path):
+    result = imported(draw.flat_of_bodies(), tmp_path, layers={"A-WAL": "wall:brick"})
+    assert 'nothing in the file is called "A-WAL"; did you mean "A-WALL"?' in result.notes
+
+
+def test_lines_of_openings_are_doorways_without_glass(tmp_path: Path):
+    doc = draw.new()
+    draw.add_rings(doc.modelspace(), draw.bodies(), "A-WALL")
+    gaps = [(4.95, 2, 5.05, 2.9), (1, 0, 2, 0.3), (2, 5.7, 3.5, 6)]
+    draw.add_rings(doc.modelspace(), [draw.rectangle(*gap) for gap in gaps], "A-OPENING")
+    draw.add_rings(doc.modelspace(), [draw.rectangle(6, 2, 7, 3)], "A-OPENING")
+    plan = imported(doc, tmp_path).plan
+    found = sorted(
+        (o.kind, o.material, round(o.width_m, 2)) for _, o in openings(plan) if o.material
+    )
+    assert found == [("door", "wood", 1.0), ("door", "wood", 1.5)]
+    assert [(o.kind, o.material) for w, o in openings(plan) if w is partition(plan)] == [
+        ("door", None)
+    ]
+    assert "glass" not in {wall.material for wall in plan.walls}
+
+
+def test_foundations_are_walls_only_where_no_others_are(tmp_path: Path):
+    doc = draw.flat_of_bodies()
+    draw.add_rings(doc.modelspace(), [draw.rectangle(-1, -1, 9, -0.8)], "S-STEM-WALL")
+    result = imported(doc, tmp_path)
+    assert_is_the_flat(result.plan)
+    (use,) = (use for use in result.layers if use.name == "S-STEM-WALL")
+    assert (use.became, use.is_unknown) == ("left out (a foundation)", False)
+    alone = draw.new()
+    draw.add_rings(alone.modelspace(), draw.bodies(), "S-STEM-WALL")
+    assert len(imported(alone, tmp_path, unit="mm").plan.walls) >= 5
 
 
 def test_an_empty_drawing_is_rejected(tmp_path: Path):

@@ -13,6 +13,7 @@ from shapely.geometry import LineString, Point, box, mapping
 from floorplans import FloorPlan, GeoOrigin, PlanError
 from floorplans.importers import ImportOptions, import_plan
 from floorplans.importers.geojson import files as geojson_files
+from floorplans.importers.geojson.features import classify
 
 ORIGIN = GeoOrigin(8.55, 47.37)
 
@@ -122,6 +123,36 @@ def test_walls_as_lines_keep_their_properties(imported) -> None:
     assert (partition.height_m, partition.openings[0].width_m) == (2.0, pytest.approx(1.1))
     outer = {(w.material, w.thickness_m) for w in plan.walls if w is not partition}
     assert outer == {("brick", 0.25)}
+
+
+@pytest.mark.parametrize("kind", ["floor_opening", "roof-opening", "ShaftOpening", "void"])
+def test_openings_in_floors_and_roofs_are_left_out_and_reported(tmp_path, kind: str) -> None:
+    data = house()
+    data["features"].append(feature(box(1, 0.05, 3, 0.25), type=kind))
+    path = tmp_path / "house.geojson"
+    path.write_text(json.dumps(data | {"crs": None}))
+    result = import_plan(path)
+    kinds = sorted(o.kind for wall in result.plan.walls for o in wall.openings)
+    assert kinds == ["door", "window"]
+    (use,) = (use for use in result.layers if use.name == kind)
+    assert use.became == "left out (in a floor or roof, not in a wall)"
+    assert not use.is_unknown
+
+
+@pytest.mark.parametrize(
+    ("category", "material"),
+    [("concrete", "concrete"), ("drywall", "plasterboard"), ("glass", "glass"), ("column", None)],
+)
+def test_solid_units_of_imdf_are_walls_of_their_material(category: str, material: str) -> None:
+    unit = {"feature_type": "unit", "properties": {"category": category}}
+    what = classify(unit, ImportOptions())
+    assert (what.kind, what.material) == ("wall", material)
+
+
+def test_materials_are_known_in_other_words(imported) -> None:
+    ring = LineString([(0, 0), (10, 0), (10, 6), (0, 6), (0, 0)])
+    plan = imported(collection(feature(ring, type="Mauer", material="Ziegel"), crs=None))
+    assert {wall.material for wall in plan.walls} == {"brick"}
 
 
 ROOMS = [box(0, 0, 4, 6), box(4, 0, 10, 3), box(4, 3, 10, 6)]

@@ -49,8 +49,8 @@ def test_house_has_its_walls_layers_and_openings(house_file) -> None:
     assert plan.bounds == pytest.approx((0.0, 0.0, 8.0, 5.0))
     assert plan.height_m == pytest.approx(2.7)
     assert sorted({(w.material, round(w.thickness_m, 6)) for w in plan.walls}) == [
-        ("brick", 0.3),
         ("plasterboard", 0.1),
+        ("plasterboard_brick_concrete_300", 0.3),
     ]
     assert openings_of(plan) == [
         ("door", 0.9, 0.0, 2.05),
@@ -111,14 +111,115 @@ def test_written_plan_reads_back_and_states_what_was_assumed(house_file) -> None
     text = imported.toml()
     assert loads(text) == imported.plan
     assert "assumed: the file states no source" in text
-    assert any("several layers" in line for line in imported.report)
+    assert any('material "Cement render" = concrete' in line for line in imported.report)
     assert any(line == "layer IfcWall: 5 objects: walls" for line in imported.report)
 
 
 def test_user_says_what_a_material_is(house_file) -> None:
     options = ImportOptions(layers={"gips*": "wall:wood"})
     materials = {wall.material for wall in import_plan(house_file, options).plan.walls}
-    assert materials == {"brick", "wood"}
+    assert materials == {"plasterboard_brick_concrete_300", "wood"}
+
+
+def partitioned(tmp_path, describe, schema: str = "IFC4"):
+    """Import a hall whose partition `describe(model, wall)` gives a material."""
+    model = Model(schema=schema)
+    model.add_storey("Ground floor")
+    model.add_ring(HALL, thickness_m=0.3)
+    describe(model, model.add_wall((3.0, 0.0), (3.0, 4.0), 0.124))
+    imported = import_plan(model.write(tmp_path / "hall.ifc"))
+    (wall,) = (w for w in imported.plan.walls if w.start[0] == w.end[0] == 3.0)
+    layers = {m.name: tuple(m.layers) for m in imported.plan.materials}
+    return imported, wall, layers.get(wall.material)
+
+
+STUDS = (("Plasterboard", 0.016), ("Metal - Stud Layer", 0.092), ("Plasterboard", 0.016))
+
+
+def as_layers(model, wall) -> None:
+    model.set_layers(wall, *STUDS)
+
+
+def as_constituents(model, wall) -> None:
+    model.set_constituents(wall, *STUDS)
+
+
+@pytest.mark.parametrize("describe", [as_layers, as_constituents])
+def test_studs_are_a_cavity_between_boards(tmp_path, describe) -> None:
+    imported, wall, layers = partitioned(tmp_path, describe)
+    assert layers == (("plasterboard", 0.016), ("air", 0.092), ("plasterboard", 0.016))
+    assert wall.thickness_m == pytest.approx(0.124)
+    assert wall.material == "plasterboard_air_plasterboard_124"
+    assert loads(imported.toml()) == imported.plan
+    (assumed,) = (a for a in imported.assumed if a.key == 'material "Metal - Stud Layer"')
+    assert (assumed.value, assumed.why) == (
+        "air",
+        "a cavity: studs, insulation or air; 1 layer of walls",
+    )
+
+
+def test_brick_insulation_and_air_are_brick_and_one_cavity(tmp_path) -> None:
+    def cavity_wall(model, wall) -> None:
+        model.set_layers(wall, ("Masonry - Brick", 0.09), ("Mineralwolle WLG 035", 0.06),
+                         ("Luftschicht", 0.04), ("Mauerwerk (innen)", 0.115))  # fmt: skip
+
+    _, wall, layers = partitioned(tmp_path, cavity_wall)
+    assert layers == (("brick", 0.09), ("air", 0.1), ("brick", 0.115))
+    assert wall.thickness_m == pytest.approx(0.305)
+
+
+def test_one_material_in_several_layers_is_one_wall(tmp_path) -> None:
+    _, wall, layers = partitioned(
+        tmp_path, lambda model, wall: model.set_layers(wall, ("Beton", 0.1), ("Concrete", 0.02))
+    )
+    assert (wall.material, layers, wall.thickness_m) == ("concrete", None, pytest.approx(0.12))
+
+
+def test_reversed_layers_are_one_material(tmp_path) -> None:
+    model = Model()
+    model.add_storey("Ground floor")
+    for k, wall in enumerate(model.add_ring(HALL, thickness_m=0.3)):
+        layers = (("Brick", 0.2), ("Rigid insulation", 0.08), ("Gypsum board", 0.02))
+        model.set_layers(wall, *layers[:: (1, -1)[k % 2]])
+    plan = import_plan(model.write(tmp_path / "hall.ifc")).plan
+    assert {wall.material for wall in plan.walls} == {"brick_air_plasterboard_300"}
+
+
+def test_unknown_layers_are_assumed_and_reported_by_name(tmp_path) -> None:
+    imported, _, layers = partitioned(
+        tmp_path,
+        lambda model, wall: model.set_layers(
+            wall, ("Frobnicate", 0.05), ("Air", 0.05), ("Membrane X", 0.001), ("Brick", 0.1)
+        ),
+    )
+    assert layers == (("plasterboard", 0.05), ("air", 0.051), ("brick", 0.1))
+    whys = {a.key: a.why for a in imported.assumed}
+    assert "an unknown name" in whys['material "Frobnicate"']
+    assert "a thin film" in whys['material "Membrane X"']
+
+
+def test_walls_of_unknown_layers_get_the_default(tmp_path) -> None:
+    _, wall, layers = partitioned(
+        tmp_path, lambda model, wall: model.set_layers(wall, ("Foo", 0.1), ("Air", 0.024))
+    )
+    assert (wall.material, layers) == ("plasterboard", None)
+
+
+def test_a_name_of_the_users_that_fits_no_material_is_reported(house_file) -> None:
+    notes = import_plan(house_file, ImportOptions(layers={"gipskartan": "wall:wood"})).notes
+    assert 'nothing in the file is called "gipskartan"; did you mean "Gipskarton"?' in notes
+
+
+def test_storeys_are_named_by_their_name(tmp_path) -> None:
+    model = Model()
+    for name, z in (("OG1", 3.2), ("EG", 0.0)):
+        model.add_storey(name, z)
+        model.storey.LongName = "Storey of " + name
+        model.add_ring(HALL, thickness_m=0.3)
+    file = model.write(tmp_path / "two.ifc")
+    assert "0: 'EG' at 0.00 m with 4 walls; 1: 'OG1'" in message_of(file)
+    assert import_plan(file, ImportOptions(level="eg")).plan.name == "two EG"
+    assert import_plan(file, ImportOptions(level="Storey of EG")).plan.name == "two EG"
 
 
 @pytest.mark.parametrize("level", ["Ground floor", "ground FLOOR", "0", "0.0"])
