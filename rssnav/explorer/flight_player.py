@@ -35,7 +35,7 @@ class FlightPlayer:
         self._first = np.zeros(1, dtype=np.int64)
         self._going = False
         self._episode = pn.widgets.DiscreteSlider(
-            name="Episode", options=[1], stylesheets=WIDGETS, sizing_mode="stretch_width"
+            name="Episode", options={"1": 0}, stylesheets=WIDGETS, sizing_mode="stretch_width"
         )
         self._player = pn.widgets.Player(
             start=0,
@@ -62,7 +62,7 @@ class FlightPlayer:
         self._first = first_frames([flight.steps for flight in flights])
         if not flights:
             return
-        self._episode.options = [flight.episode for flight in flights]
+        self._episode.options = {_name(flight): index for index, flight in enumerate(flights)}
         self._player.end = int(self._first[-1]) - 1
         if self._player.direction == 0:
             self._player.value = self._player.end
@@ -85,15 +85,14 @@ class FlightPlayer:
         self._show(flight, step)
         self._text.object = _words(flight, step, self._training.settings.episodes)
         self._going = True
-        self._episode.value = flight.episode
+        self._episode.value = index
         self._going = False
 
     def _jump(self, event: Any) -> None:
         """Jump to the start of an episode's flight."""
         if self._going:
             return
-        episodes = self._episode.options
-        self._player.value = int(self._first[episodes.index(event.new)])
+        self._player.value = int(self._first[event.new])
 
 
 def first_frames(steps: list[int]) -> NDArray[np.int64]:
@@ -116,9 +115,15 @@ def flight_at(first: NDArray[np.int64], frame: int) -> tuple[int, float]:
     return index, (frame - int(first[index])) / last if last else 1.0
 
 
+def _name(flight: Flight) -> str:
+    return "learned" if flight.learned else str(flight.episode)
+
+
 def _words(flight: Flight, step: int, episodes: int) -> str:
-    end = "reaches the source" if flight.reached else "is truncated"
-    return (
-        f"Episode <b>{flight.episode}</b> of {episodes}: step {step} of {flight.steps}, "
-        f'<span class="quiet">which {end}</span>'
-    )
+    if flight.learned:
+        what, end = f"Learned in <b>{episodes}</b> episodes", "flies in a circle"
+    else:
+        what, end = f"Episode <b>{flight.episode}</b> of {episodes}", "is truncated"
+    if flight.reached:
+        end = "reaches the source"
+    return f'{what}: step {step} of {flight.steps}, <span class="quiet">which {end}</span>'

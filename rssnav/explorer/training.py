@@ -21,7 +21,7 @@ from rssnav.explorer.tracing import TracedMap
 from rssnav.kernels import common
 from rssnav.learning_parameters import QLearning
 from rssnav.learning_rules import Learner, LearningProblem
-from rssnav.optimal_flights import shortest_path
+from rssnav.optimal_flights import greedy_path, shortest_path
 from rssnav.training import generator_states
 from rssnav.world import GridWorld, WorldError
 
@@ -85,21 +85,24 @@ class TrainingSettings:
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """The flight of one episode.
+    """The flight of one episode, or the one that was learned.
 
     Attributes
     ----------
     episode : int
-        Counted from 1.
+        Counted from 1; the last one for the learned flight.
     position : (n + 1, 2) float64
         Cell centres [m], the start first.
     reached : bool
         Whether it found the source; otherwise the episode was truncated.
+    learned : bool
+        Whether it is the greedy flight after training.
     """
 
     episode: int
     position: NDArray[np.float64]
     reached: bool
+    learned: bool = False
 
     @property
     def steps(self) -> int:
@@ -136,7 +139,7 @@ class LiveTraining:
     Attributes
     ----------
     flights : list of Flight
-        Flights of the episodes kept so far, in order.
+        Flights of the episodes kept so far, in order; the learned one at the end.
     shortest_steps : int or None
         Fewest steps to the goal; None until known.
     converged_episode : int or None
@@ -205,6 +208,9 @@ class LiveTraining:
         for episode in kept_episodes(settings.episodes).tolist():
             self._advance(learner, episode)
             self.flights.append(_latest_flight(learner, problem.process, world))
+        best = greedy_path(world, problem.process, learner.state_values())
+        position = world.position[best.cells]
+        self.flights.append(Flight(settings.episodes, position, best.reached, learned=True))
 
     def _advance(self, learner: Learner, episode: int) -> None:
         """Train up to an episode and store its steps."""

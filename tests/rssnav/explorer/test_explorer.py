@@ -294,8 +294,11 @@ def test_training_is_the_one_that_train_makes(session, agent) -> None:
     result = rssnav.train(world, settings.agent_itself(), runs=1, episodes=300, seed=4)
     np.testing.assert_array_equal(live.steps, result.steps[0])
     assert (live.converged_episode or -1) == result.converged_episode[0]
-    assert [flight.episode for flight in live.flights] == kept_episodes(300).tolist()
-    for flight in live.flights:
+    *flown, learned = live.flights
+    assert learned.learned
+    np.testing.assert_array_equal(learned.position, result.trajectory_m(0))
+    assert [flight.episode for flight in flown] == kept_episodes(300).tolist()
+    for flight in flown:
         assert flight.steps == result.steps[0, flight.episode - 1]
         assert tuple(flight.position[0]) == session.plan.start
         assert flight.reached
