@@ -30,8 +30,8 @@ class Limits:
         Maximum number of cells of a map.
     work : int
         Maximum of walls times cells; the time of a map is roughly proportional to it.
-    map_s, paths_s : float
-        Time limits for tracing a map, and the paths to a cell [s].
+    map_s : float
+        Time limit for tracing a map [s].
     import_s : float
         Time limit for reading an upload [s].
     import_bytes : int
@@ -50,7 +50,6 @@ class Limits:
     cells: int = 40_000
     work: int = 15_000_000
     map_s: float = 300.0
-    paths_s: float = 60.0
     import_s: float = 60.0
     import_bytes: int = 4_000_000_000
 
