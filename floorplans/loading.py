@@ -109,7 +109,7 @@ def loads(text: str, *, origin: str = "<text>") -> FloorPlan:
     PlanError
         When the text is not TOML, or the plan is wrong.
     """
-    return from_data(_parse(text, origin), origin=origin)
+    return from_data(parse_toml(text, origin), origin=origin)
 
 
 def loads_unchecked(text: str, *, origin: str = "<text>") -> PlanFile:
@@ -121,12 +121,12 @@ def loads_unchecked(text: str, *, origin: str = "<text>") -> PlanFile:
         When the text is not TOML, or not of this format: a key missing, a value of a wrong type.
     """
     try:
-        return _read_unchecked(Table(_parse(text, origin), PLAN_KEYS))
+        return _read_unchecked(Table(parse_toml(text, origin), PLAN_KEYS))
     except PlanError as error:
         raise error.located(origin) from None
 
 
-def _parse(text: str, origin: str) -> dict[str, object]:
+def parse_toml(text: str, origin: str) -> dict[str, object]:
     """Parse TOML whose size and nesting are limited: the parser takes quadratic time over keys."""
     if len(text) > MAX_CHARACTERS:
         raise PlanError(f"a plan has at most {MAX_CHARACTERS} characters", origin=origin)

@@ -22,6 +22,7 @@ from floorplans.importers.draft import (
 )
 from floorplans.importers.formats import FORMATS, import_plan, read_draft
 from floorplans.importers.imported import Imported
+from floorplans.importers.layer_file import layers_toml, read_layers
 
 __all__ = [
     "FORMATS",
@@ -35,5 +36,7 @@ __all__ = [
     "RawWall",
     "assemble",
     "import_plan",
+    "layers_toml",
     "read_draft",
+    "read_layers",
 ]

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from atomicfiles import atomic_write
-from floorplans.importers import Imported, ImportOptions, import_plan
+from floorplans.importers import Imported, ImportOptions, import_plan, layers_toml, read_layers
 from floorplans.repair.walls import Change
 from rssnav.cli.console import print_json, print_table, say
 from rssnav.cli.options import Json, check_suffix, examples
@@ -66,6 +66,12 @@ def _layers(texts: list[str] | None) -> dict[str, str]:
             )
         layers[name] = meaning
     return layers
+
+
+def _with_saved(layers: dict[str, str], file: Path | None) -> dict[str, str]:
+    """Meanings of the command line, then those of a file: the first that matches counts."""
+    saved = {} if file is None else read_layers(file)
+    return layers | {name: saved[name] for name in saved if name not in layers}
 
 
 def import_file(
@@ -157,6 +163,14 @@ def import_file(
             help="What a layer or type is: wall, door, window or ignore; NAME may hold * and ?.",
         ),
     ] = None,
+    layers: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Meanings of layers that --save-layers wrote."),
+    ] = None,
+    save_layers: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write --layers and --layer to this .toml file."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace whatever is at FILE.")] = False,
     as_json: Json = False,
 ) -> None:
@@ -166,6 +180,8 @@ def import_file(
     lists what became of every layer, and the repairs.
     """
     check_suffix(output, (".toml",), "--output")
+    if save_layers is not None:
+        check_suffix(save_layers, (".toml",), "--save-layers")
     options = ImportOptions(
         name=name,
         height_m=height,
@@ -179,13 +195,17 @@ def import_file(
         level=level,
         scale_m=scale,
         tolerance_m=tolerance,
-        layers=_layers(layer),
+        layers=_with_saved(_layers(layer), layers),
     )
     if output.exists() and not force:
         raise FileExistsError(17, "already exists; use --force to overwrite", str(output))
     imported = import_plan(file, options)
     with atomic_write(output) as beside:
         beside.write_text(imported.toml(), encoding="utf-8", newline="\n")
+    if save_layers is not None:
+        with atomic_write(save_layers) as beside:
+            text = layers_toml(options.layers, imported.layers)
+            beside.write_text(text, encoding="utf-8", newline="\n")
     _report(imported, output, as_json)
 
 

@@ -47,6 +47,41 @@ def test_the_imported_plan_passes_the_check(drawing: Path, tmp_path: Path):
     assert "is valid" in done("plan", "check", output)
 
 
+def test_meanings_of_layers_are_saved_and_used_again(drawing: Path, tmp_path: Path):
+    first, second, saved = (tmp_path / name for name in ("a.toml", "b.toml", "layers.toml"))
+    wooden = ("--layer", "W*=wall:wood", "--layer", "ta*=ignore")
+    done("plan", "import", drawing, "-o", first, *wooden, "--save-layers", saved)
+    text = saved.read_text()
+    assert '[layers]\n"W*" = "wall:wood"\n"ta*" = "ignore"\n' in text
+    assert '# "WALLS": 1 objects: walls of wood' in text
+    done("plan", "import", drawing, "-o", second, "--layers", saved)
+    assert floorplans.load(second) == floorplans.load(first)
+    done(
+        "plan", "import", drawing, "-o", second, "--layers", saved, "--layer", "WALLS=wall:brick",
+        "--force",
+    )  # fmt: skip
+    assert {wall.material for wall in floorplans.load(second).walls} == {"brick"}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("layers = 3", "layers.toml: layers = 3: expected a table"),
+        ("[layers]\nA = 1", "layers.toml: layers.A = 1: expected a string"),
+        ("[layer]\nA = 'wall'", 'layers.toml: layer: unknown key; did you mean "layers"?'),
+        ("[layers", "layers.toml: not valid TOML"),
+        ("[layers]\nWALLS = 'wal'", 'layers.WALLS = "wal": unknown kind of layer; did you mean'),
+        ("", "layers.toml: layers"),
+    ],
+)
+def test_damaged_files_of_layers_are_refused(
+    text: str, message: str, drawing: Path, tmp_path: Path
+):
+    file = tmp_path / "layers.toml"
+    file.write_text(text)
+    assert message in fault("plan", "import", drawing, "-o", tmp_path / "a.toml", "--layers", file)
+
+
 def test_options_go_into_the_plan(drawing: Path, tmp_path: Path):
     output = tmp_path / "hall.toml"
     done(
