@@ -76,8 +76,29 @@ FORMATS = (
         _is_ros_map,
     ),
     Format("IFC model", (".ifc",), "ifc.reader", "read_ifc", _is_ifc),
+    Format(
+        "zipped IFC model", (".ifczip",), "ifc.reader", "read_ifc", lambda h: h.startswith(_ZIP)
+    ),
 )  # fmt: skip
 """All formats that can be imported."""
+
+SAVE_AS = {
+    ".dwg": "a DWG drawing; save it as DXF",
+    ".dgn": "a DGN drawing; save it as DXF",
+    ".ifcxml": "an ifcXML model; save it as IFC (STEP)",
+    ".rvt": "a Revit model; export it as IFC, one storey as DXF",
+    ".pln": "an Archicad model; export it as IFC, one storey as DXF",
+    ".skp": "a SketchUp model; export it as IFC",
+    ".shp": "a shapefile; convert it to GeoJSON",
+    ".gpkg": "a GeoPackage; export its layer as GeoJSON",
+    ".svg": "an SVG drawing; save it as DXF, or as a PNG picture with a known scale",
+    ".pdf": "a PDF file; save the drawing as DXF, or as a PNG picture with a known scale",
+    ".jpg": "a JPEG picture; save it as PNG",
+    ".jpeg": "a JPEG picture; save it as PNG",
+}
+"""What is not read, by its suffix, and what to do."""
+
+_MAGIC = {b"AC10": ".dwg", b"%PDF": ".pdf", b"\xff\xd8\xff": ".jpg"}
 
 
 def import_plan(path: str | Path, options: ImportOptions | None = None) -> Imported:
@@ -124,7 +145,9 @@ def read_draft(path: Path, options: ImportOptions) -> Draft | FloorPlan:
         raise PlanError("the file is empty", origin=str(path))
     if not kind.looks_right(head):
         likely = [other.title for other in FORMATS if other.looks_right(head)]
+        known = [SAVE_AS[suffix] for magic, suffix in _MAGIC.items() if head.startswith(magic)]
         hint = f"; it looks like a {likely[0]}" if likely else ""
+        hint = f"; it is {known[0]}" if known else hint
         raise PlanError(
             f"the file ends in {path.suffix} but does not begin like a {kind.title}{hint}",
             origin=str(path),
@@ -137,6 +160,8 @@ def _format_of(path: Path) -> Format:
     for kind in FORMATS:
         if suffix in kind.suffixes:
             return kind
+    if suffix in SAVE_AS:
+        raise PlanError(f"this is {SAVE_AS[suffix]}", origin=str(path))
     known = ", ".join(suffix for kind in FORMATS for suffix in kind.suffixes)
     found = f"the ending {path.suffix}" if path.suffix else "no ending"
     raise PlanError(f"a file with {found} cannot be imported; known: {known}", origin=str(path))

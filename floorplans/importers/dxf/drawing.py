@@ -61,12 +61,15 @@ class Content:
         Objects of each layer, after blocks are exploded.
     hidden : set of str
         Layers that are off or frozen.
+    missing : set of str
+        Inserted blocks whose lines are in other files.
     """
 
     curves: defaultdict[str, list[Curve]] = field(default_factory=lambda: defaultdict(list))
     symbols: list[Symbol] = field(default_factory=list[Symbol])
     n_objects: Counter[str] = field(default_factory=Counter[str])
     hidden: set[str] = field(default_factory=set[str])
+    missing: set[str] = field(default_factory=set[str])
 
 
 def load_document(path: Path) -> Document:
@@ -80,6 +83,7 @@ def load_document(path: Path) -> Document:
     _check_file(path)
     with _damage_reported():
         document = _load(path)
+        _check_model_space(document)
         _check_blocks(document)
     return document
 
@@ -156,6 +160,30 @@ def _is_hidden(layer: Any) -> bool:
     return bool(layer.is_off() or layer.is_frozen())
 
 
+def _check_model_space(document: Document) -> None:
+    """Say where the objects of a drawing with an empty model space are."""
+    if len(document.modelspace()):
+        return
+    empty = "the drawing is empty: nothing is in its model space"
+    papers = [name for name in document.layout_names() if _is_used(document, name)]
+    if papers:
+        raise PlanError(
+            f"{empty}; its objects are on the sheet {papers[0]!r}; move them to model space"
+        )
+    blocks = [b.name for b in document.blocks if not b.name.startswith("*") and len(b)]
+    if blocks:
+        raise PlanError(
+            f"{empty}; it only defines blocks ({', '.join(blocks[:10])}); insert the one of the "
+            "storey in model space and save the drawing"
+        )
+    raise PlanError(empty)
+
+
+def _is_used(document: Document, layout: str) -> bool:
+    """Whether a sheet holds more than viewports."""
+    return any(entity.dxftype() != "VIEWPORT" for entity in document.layout(layout))
+
+
 def _check_blocks(document: Document) -> None:
     """Reject blocks that explode into too many objects, before exploding any."""
     sizes: dict[str, float] = {}
@@ -223,6 +251,9 @@ class _Collector:
         layer_kind = self._meaning(layer).kind
         name_kind = meaning_of(str(insert.dxf.get("name", ""))).kind
         named = name_kind in ("door", "window")
+        block = insert.block()
+        if block is not None and block.block.is_xref:
+            self._content.missing.add(str(block.name))
         kind = name_kind if named else layer_kind
         if layer_kind == "ignore" or depth >= _MAX_DEPTH:
             self._content.n_objects[layer] += 1

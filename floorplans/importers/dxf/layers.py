@@ -88,13 +88,22 @@ def layers_of(content: Content, given: Mapping[str, str]) -> Layers:
     return layers
 
 
+def missing_blocks(content: Content) -> str:
+    """What to do about blocks of other files; empty if there are none."""
+    if not content.missing:
+        return ""
+    names = ", ".join(sorted(content.missing)[:10])
+    return f"the blocks {names} are in other files: bind these external references and save"
+
+
 def _no_walls(content: Content) -> PlanError:
-    if not content.n_objects:
-        return PlanError("the drawing is empty: nothing is in its model space")
+    problem = "; ".join(filter(None, ("no lines of walls were found", missing_blocks(content))))
     names = [name for name, _ in content.n_objects.most_common(20)]
+    if not names:
+        return PlanError(f"{problem}; the blocks in model space are empty")
     likely = max(names, key=lambda name: len(content.curves.get(name, ())))
     return PlanError(
-        f"no lines of walls were found; say which layers hold them, such as {likely}=wall; "
+        f"{problem}; say which layers hold them, such as {likely}=wall; "
         f"layers with objects: {', '.join(map(repr, names))}",
         remedy="layers",
     )

@@ -32,7 +32,7 @@ from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
 from floorplans.importers.dxf.curves import Curve, Swing
 from floorplans.importers.dxf.drawing import Content, load_document, read_content
-from floorplans.importers.dxf.layers import Layers, layers_of
+from floorplans.importers.dxf.layers import Layers, layers_of, missing_blocks
 from floorplans.importers.dxf.openings import (
     as_windows_outside,
     door_swings,
@@ -111,7 +111,11 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
         walls=tuple(walls),
         openings=tuple(openings),
         layers=layers.uses(),
-        notes=(f"unit {unit}, as {stated_by}", *unmatched(options.layers, content.n_objects)),
+        notes=(
+            f"unit {unit}, as {stated_by}",
+            *([missing_blocks(content)] if content.missing else []),
+            *unmatched(options.layers, content.n_objects),
+        ),
     )
 
 

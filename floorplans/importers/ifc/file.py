@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
+from zipfile import BadZipFile, ZipFile, is_zipfile
 
 from floorplans.errors import PlanError
 from floorplans.importers.draft import ImportOptions
@@ -18,6 +22,7 @@ CHORD_M = 0.02
 
 _END = b"END-ISO-10303-21;"
 _TAIL_BYTES = 4096
+_PIECE_BYTES = 1 << 20
 
 Model = Any
 """An ifcopenshell.file; the library gives no types."""
@@ -40,25 +45,58 @@ class Storey:
 
 
 def open_model(path: Path) -> Model:
-    """Read an IFC file; raise `PlanError` if that fails."""
+    """Read an IFC file, zipped or not; raise `PlanError` if that fails."""
+    if find_spec("ifcopenshell") is None:
+        raise PlanError("IFC files need the library ifcopenshell", remedy="install_ifc")
+    _check_bytes(path.stat().st_size)
+    if not is_zipfile(path):
+        return _parse(path)
+    with TemporaryDirectory() as folder:
+        return _parse(_unzipped(path, Path(folder)))
+
+
+def _parse(path: Path) -> Model:
+    import ifcopenshell
+
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
+        if _END not in file.read():
+            raise PlanError("the file is cut off: it does not end with END-ISO-10303-21")
     try:
-        import ifcopenshell
-    except ImportError as error:
-        raise PlanError("IFC files need the library ifcopenshell", remedy="install_ifc") from error
-    size = path.stat().st_size
+        return ifcopenshell.open(str(path))
+    except ifcopenshell.SchemaError as error:
+        raise PlanError(
+            f"{error}; save the model as IFC2x3 or IFC4 from the program it was made with"
+        ) from error
+    except Exception as error:  # the library raises errors of many types
+        raise PlanError(f"not a readable IFC model: {error}") from error
+
+
+def _check_bytes(size: int) -> None:
     if size > MAX_BYTES:
         raise PlanError(
             f"{size / 1e9:.3g} GB, more than the {MAX_BYTES / 1e9:.3g} GB that are read; export "
             "one storey, or walls, slabs, doors and windows only"
         )
-    with path.open("rb") as file:
-        file.seek(max(0, size - _TAIL_BYTES))
-        if _END not in file.read():
-            raise PlanError("the file is cut off: it does not end with END-ISO-10303-21")
+
+
+def _unzipped(path: Path, folder: Path) -> Path:
+    """Write the model in an archive to a folder; its stated size is not trusted."""
+    model = folder / "model.ifc"
     try:
-        return ifcopenshell.open(str(path))
-    except Exception as error:  # the library raises errors of many types
-        raise PlanError(f"not a readable IFC model: {error}") from error
+        with ZipFile(path) as archive:
+            names = [name for name in archive.namelist() if name.lower().endswith(".ifc")]
+            if len(names) != 1:
+                raise PlanError(f"the archive holds {len(names)} files *.ifc, expected one")
+            with archive.open(names[0]) as packed, model.open("wb") as unpacked:
+                size = 0
+                while piece := packed.read(_PIECE_BYTES):
+                    size += len(piece)
+                    _check_bytes(size)
+                    unpacked.write(piece)
+    except (BadZipFile, EOFError, NotImplementedError, RuntimeError, zlib.error) as error:
+        raise PlanError(f"the archive cannot be unpacked: {error}") from error
+    return model
 
 
 def scale_of(model: Model, options: ImportOptions) -> Scale:

@@ -347,6 +347,37 @@ def test_an_empty_drawing_is_rejected(tmp_path: Path):
     assert "the drawing is empty" in refusal(draw.new(), tmp_path)
 
 
+def test_a_library_of_blocks_is_rejected_with_what_to_do(tmp_path: Path):
+    doc = draw.new()
+    draw.door_block(doc, 900.0, "DOOR90")
+    message = refusal(doc, tmp_path)
+    assert "it only defines blocks (DOOR90); insert the one of the storey" in message
+
+
+def test_a_drawing_on_a_sheet_is_rejected_with_what_to_do(tmp_path: Path):
+    doc = draw.new()
+    draw.add_rings(doc.layout("Layout1"), draw.bodies(), "A-WALL")
+    assert "are on the sheet 'Layout1'; move them to model space" in refusal(doc, tmp_path)
+
+
+def test_external_references_are_reported(tmp_path: Path):
+    doc = draw.new()
+    doc.add_xref_def("walls.dwg", "WALLS-XREF")
+    doc.modelspace().add_blockref("WALLS-XREF", (0, 0))
+    assert "bind these external references" in refusal(doc, tmp_path)
+    draw.add_rings(doc.modelspace(), draw.bodies(), "A-WALL")
+    draw.add_openings(doc)
+    assert any("WALLS-XREF" in note for note in imported(doc, tmp_path).notes)
+
+
+@pytest.mark.parametrize("name", ["plan.dwg", "plan.DWG", "plan.dxf"])
+def test_a_dwg_drawing_says_what_to_do(name: str, tmp_path: Path):
+    path = tmp_path / name
+    path.write_bytes(b"AC1032" + bytes(100))
+    with pytest.raises(PlanError, match="a DWG drawing; save it as DXF"):
+        import_plan(path)
+
+
 def test_a_drawing_of_text_is_rejected(tmp_path: Path):
     doc = draw.new()
     doc.modelspace().add_text("nothing but words", dxfattribs={"layer": "notes"})

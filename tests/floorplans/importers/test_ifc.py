@@ -6,6 +6,7 @@ import random
 from contextlib import suppress
 from itertools import pairwise
 from math import hypot, pi
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import pytest
 from ifc_models import HOUSE, Model, Point, house
@@ -13,6 +14,7 @@ from ifcopenshell.api.owner import settings
 
 from floorplans import PlanError, loads
 from floorplans.importers import ImportOptions, import_plan
+from floorplans.importers.ifc import file as ifc_file
 
 HALL: list[Point] = [(0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0)]
 
@@ -337,7 +339,7 @@ def test_files_that_are_no_model(tmp_path, house_file) -> None:
     path.write_text(text[: len(text) // 2])
     assert "the file is cut off" in message_of(path)
     path.write_text(text.replace("IFC4", "IFC9"))
-    assert "not a readable IFC model: Unsupported schema" in message_of(path)
+    assert "Unsupported schema: IFC9; save the model as" in message_of(path)
 
 
 def test_mutated_models_never_crash(tmp_path, house_file) -> None:
@@ -356,3 +358,37 @@ def test_mutated_models_never_crash(tmp_path, house_file) -> None:
         path.write_bytes(bytes(changed) + end)
         with suppress(PlanError):
             import_plan(path)
+
+
+def zipped(folder, *files):
+    path = folder / "house.ifczip"
+    with ZipFile(path, "w", ZIP_DEFLATED) as archive:
+        for name, content in files:
+            archive.writestr(name, content)
+    return path
+
+
+def test_zipped_model_is_read_as_it_is(house_file, tmp_path) -> None:
+    path = zipped(tmp_path, ("house.ifc", house_file.read_bytes()), ("notes.txt", b"hello"))
+    assert import_plan(path).plan == import_plan(house_file).plan
+
+
+def test_zipped_models_that_cannot_be_read(house_file, tmp_path, monkeypatch) -> None:
+    data = house_file.read_bytes()
+    assert "holds 0 files *.ifc" in message_of(zipped(tmp_path, ("a.txt", b"")))
+    assert "holds 2 files *.ifc" in message_of(zipped(tmp_path, ("a.ifc", data), ("b.ifc", data)))
+    assert "cut off" in message_of(zipped(tmp_path, ("a.ifc", data[:-30])))
+    whole = zipped(tmp_path, ("a.ifc", data))
+    cut = bytearray(whole.read_bytes())
+    cut[80:400] = bytes(320)
+    (tmp_path / "cut.ifczip").write_bytes(cut)
+    assert "cannot be unpacked" in message_of(tmp_path / "cut.ifczip")
+    monkeypatch.setattr(ifc_file, "MAX_BYTES", len(data) - 1)
+    assert "more than the" in message_of(whole)
+
+
+def test_old_schemas_say_what_to_do(house_file, tmp_path) -> None:
+    old = tmp_path / "old.ifc"
+    old.write_text(house_file.read_text().replace("('IFC4')", "('IFC2X_FINAL')"))
+    message = message_of(old)
+    assert "IFC2X_FINAL; save the model as IFC2x3 or IFC4" in message
