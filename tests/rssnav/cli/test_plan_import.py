@@ -124,7 +124,7 @@ def test_a_file_that_is_there_is_replaced_only_by_force(drawing: Path, tmp_path:
         ("plan.dxf", b"\x89PNG\r\n\x1a\n", "does not begin like a DXF drawing"),
         ("plan.dxf", b"", "the file is empty"),
         ("plan.dxf", b"  0\nSECTION\n  2\nnonsense", "plan.dxf: "),
-        ("plan.dwg", b"AC1032", "known: .dxf"),
+        ("plan.dwg", b"AC1032", "a DWG drawing; save it as DXF"),
         ("plan.geojson", b"  0\nSECTION", "does not begin like a GeoJSON"),
     ],
 )
