@@ -23,7 +23,7 @@ MAX_VALUES = 1 << 27
 _FILTERS = (h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_FLETCHER32)
 """The filters that are read, in the order in which they are applied, each at most once."""
 _CHECKSUM_BYTES = 4
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _HASH_BYTES = 32
 
 
@@ -49,6 +49,8 @@ def sound_content(path: Path) -> bytes:
     if size > MAX_FILE_BYTES:
         raise Hdf5ContentError(f"{size} bytes; at most {MAX_FILE_BYTES} are read")
     content = path.read_bytes()
+    if not content.startswith(HDF5_SIGNATURE):
+        raise Hdf5ContentError("not an HDF5 file")
     body, mark, digest = content.rpartition(HASH_MARK)
     if mark and len(digest) == _HASH_BYTES:
         if hashlib.sha256(body).digest() != digest:
@@ -63,7 +65,7 @@ def sound_content(path: Path) -> bytes:
 
 def _end_of_hdf5(content: bytes) -> int | None:
     """End of the file by its superblock of version 2 or 3 (HDF5 specification, II.A)."""
-    known = content.startswith(_SIGNATURE) and content[8:9] in (b"\x02", b"\x03")
+    known = content.startswith(HDF5_SIGNATURE) and content[8:9] in (b"\x02", b"\x03")
     return struct.unpack_from("<Q", content, 28)[0] if known and len(content) >= 36 else None
 
 

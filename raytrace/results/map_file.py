@@ -24,12 +24,12 @@ from raytrace.radio.pattern_table import PatternTable
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.checked_hdf5 import LARGEST, Checked, Hdf5ContentError, open_checked
 from raytrace.results.hdf5 import hdf5_bytes, write_array
+from raytrace.results.hdf5_content import HDF5_SIGNATURE
 from raytrace.results.layers import LAYERS
 
 FORMAT = "rssnav radio map"
 FORMAT_VERSION = 1
 
-_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _MARKS = (FORMAT.encode(), b"rss_coherent_dbm")
 _TRANSMIT, _RECEIVE = "transmit_antenna", "receive_antenna"
 _MADE_WITH = "made_with_"
@@ -179,7 +179,7 @@ def is_radio_map(path: Path) -> bool:
         content = path.read_bytes()
     if not content:
         return True
-    return content.startswith(_HDF5_SIGNATURE) and any(mark in content for mark in _MARKS)
+    return content.startswith(HDF5_SIGNATURE) and any(mark in content for mark in _MARKS)
 
 
 def _damaged(path: Path, problem: str) -> MapFileError:

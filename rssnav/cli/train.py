@@ -1,9 +1,8 @@
 """``rssnav train``: train an agent on a radio map."""
 
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import typer
@@ -29,24 +28,32 @@ from rssnav import (
 )
 from rssnav.cli.console import note, one_progress, print_json, print_pairs, say
 from rssnav.cli.options import Json, Plan, Runs, Seed, Threads, examples
+from rssnav.cli.train_options import (
+    EPISODES,
+    EPISODES_TO_CONVERGE,
+    AgentName,
+    AgentOption,
+    Episodes,
+    Eta,
+    FluctuationDb,
+    Force,
+    Gamma,
+    GoalDistance,
+    GoalRss,
+    InitialQ,
+    Interval,
+    MapFile,
+    MaxSteps,
+    ResultFile,
+    Speed,
+    Tolerance,
+    UntilConverged,
+)
 from rssnav.discrete_states import StateRule
 from rssnav.keeping import lenient, save_or_rescue
 from rssnav.kernel_cache import learning_cache
 from rssnav.maps import Progress, require_map_for
 from rssnav.training import Checkpoint
-
-EPISODES = 1000
-EPISODES_TO_CONVERGE = 20_000
-GOAL = "Goal"
-LEARNING = "Learning"
-STATES = "States of the RSS agent"
-
-
-class AgentName(StrEnum):
-    """Agents that can be trained."""
-
-    RSS = "rss"
-    LOCATION = "location"
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -63,127 +70,24 @@ def add_to(parent: typer.Typer) -> None:
 
 def train_agent(
     plan: Plan,
-    map_file: Annotated[
-        Path,
-        typer.Option("--map", metavar="FILE", help="The plan's radio map (rssnav map)."),
-    ],
-    agent: Annotated[AgentName, typer.Option(help="What the agent senses.")] = AgentName.RSS,
-    speed: Annotated[
-        int, typer.Option(metavar="V", min=1, max=1000, help="Cells per step along an axis.")
-    ] = 1,
+    map_file: MapFile,
+    agent: AgentOption = AgentName.RSS,
+    speed: Speed = 1,
     runs: Runs = 100,
-    episodes: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N",
-            min=1,
-            max=10_000_000,
-            help="Episodes of each; a maximum with --until-converged.",
-            show_default=f"{EPISODES}, or {EPISODES_TO_CONVERGE} with --until-converged",
-        ),
-    ] = None,
-    until_converged: Annotated[
-        bool,
-        typer.Option(
-            "--until-converged", help="Stop a run when it flies the same path three times in a row."
-        ),
-    ] = False,
+    episodes: Episodes = None,
+    until_converged: UntilConverged = False,
     seed: Seed = 0,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            metavar="FILE",
-            help="File of the result (HDF5). Runs that it has already are not trained again.",
-            show_default=False,
-        ),
-    ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Train from scratch, and replace FILE.")
-    ] = False,
-    tolerance: Annotated[
-        float | None,
-        typer.Option(
-            metavar="DB",
-            min=0.0,
-            max=1000.0,
-            help="A reading within this of a known state is that state.",
-            show_default="every value is a state",
-            rich_help_panel=STATES,
-        ),
-    ] = None,
-    interval: Annotated[
-        float | None,
-        typer.Option(
-            metavar="DB",
-            min=0.001,
-            max=1000.0,
-            help="States are RSS intervals of this width.",
-            show_default="every value is a state",
-            rich_help_panel=STATES,
-        ),
-    ] = None,
-    fluctuation: Annotated[
-        float,
-        typer.Option(
-            metavar="DB",
-            min=0.0,
-            max=100.0,
-            help="Standard deviation of the RSS readings; needs --tolerance or --interval.",
-            rich_help_panel=STATES,
-        ),
-    ] = 0.0,
-    goal_rss: Annotated[
-        float,
-        typer.Option(
-            metavar="DBM",
-            min=-1000.0,
-            max=1000.0,
-            help="The RSS agent has found the source above this RSS.",
-            rich_help_panel=GOAL,
-        ),
-    ] = RssAgent.terminal_dbm,
-    goal_distance: Annotated[
-        float,
-        typer.Option(
-            metavar="M",
-            min=0.0,
-            max=10_000.0,
-            help="The location agent has found the source within this distance in metres.",
-            rich_help_panel=GOAL,
-        ),
-    ] = LocationAgent.terminal_distance_m,
-    gamma: Annotated[
-        float,
-        typer.Option(
-            metavar="G", min=0.0, max=1.0, help="Discount factor.", rich_help_panel=LEARNING
-        ),
-    ] = QLearning.gamma,
-    eta: Annotated[
-        float,
-        typer.Option(
-            metavar="E",
-            min=0.0,
-            max=1.0,
-            help="Decay of epsilon and alpha per step.",
-            rich_help_panel=LEARNING,
-        ),
-    ] = QLearning.eta,
-    initial_q: Annotated[
-        float,
-        typer.Option(metavar="Q", min=-1e9, max=1e9, help="Initial Q.", rich_help_panel=LEARNING),
-    ] = QLearning.initial_q,
-    max_steps: Annotated[
-        int,
-        typer.Option(
-            metavar="N",
-            min=1,
-            max=10**9,
-            help="Steps after which an episode is truncated.",
-            rich_help_panel=LEARNING,
-        ),
-    ] = QLearning.max_steps,
+    output: ResultFile = None,
+    force: Force = False,
+    tolerance: Tolerance = None,
+    interval: Interval = None,
+    fluctuation: FluctuationDb = 0.0,
+    goal_rss: GoalRss = RssAgent.terminal_dbm,
+    goal_distance: GoalDistance = LocationAgent.terminal_distance_m,
+    gamma: Gamma = QLearning.gamma,
+    eta: Eta = QLearning.eta,
+    initial_q: InitialQ = QLearning.initial_q,
+    max_steps: MaxSteps = QLearning.max_steps,
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
