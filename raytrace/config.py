@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+MAX_POWER_DBM = 1000.0
+
 
 @dataclass(frozen=True)
 class TraceConfig:
@@ -40,7 +42,9 @@ class TraceConfig:
             raise ValueError(f"max_diffractions = {self.max_diffractions}: expected 0 or 1")
         if not 0 <= self.max_transmissions <= 20:
             raise ValueError(f"max_transmissions = {self.max_transmissions}: expected 0 to 20")
-        if math.isnan(self.min_power_dbm):
-            raise ValueError("min_power_dbm is not a number: expected a level in dBm")
+        if not self.min_power_dbm <= MAX_POWER_DBM:
+            raise ValueError(
+                f"min_power_dbm = {self.min_power_dbm}: expected at most {MAX_POWER_DBM:g} dBm"
+            )
         if self.max_paths is not None and self.max_paths < 1:
             raise ValueError(f"max_paths = {self.max_paths}: expected 1 or more, or None")

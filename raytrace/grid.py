@@ -5,6 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from raytrace.arrays import Floats
+from raytrace.errors import SceneError
+
+MAX_CELLS = 1 << 27
+"""Most cells of a grid: as many as a file holds."""
 
 _SAME_PLACE_M = 1e-9
 
@@ -43,12 +47,30 @@ class Grid:
             lies inside.
         height_m
             Height of the receivers [m].
+
+        Raises
+        ------
+        ValueError
+            Where the numbers make no grid.
+        SceneError
+            For one of more than `MAX_CELLS`.
         """
+        if np.shape(bounds) != (4,) or not np.isfinite((*bounds, cell_size_m, height_m)).all():
+            raise ValueError(
+                f"bounds {bounds}, cell_size_m = {cell_size_m}, height_m = {height_m}: "
+                "expected finite numbers, four of them bounds"
+            )
         x_min, y_min, x_max, y_max = bounds
         if not (cell_size_m > 0 and x_max > x_min and y_max > y_min):
             raise ValueError(
                 f"no grid over bounds {bounds} with cell_size_m = {cell_size_m}: "
                 "expected x_min < x_max, y_min < y_max and a positive cell size"
+            )
+        n_cells = (x_max - x_min) / cell_size_m * ((y_max - y_min) / cell_size_m)
+        if not n_cells <= MAX_CELLS:
+            raise SceneError(
+                f"cell_size_m = {cell_size_m:g}: {n_cells:.3g} cells over bounds {bounds}, "
+                f"expected at most {MAX_CELLS}"
             )
         half = 0.5 * cell_size_m
         n_x = max(1, int(np.floor((x_max - x_min + half) / cell_size_m - 1e-9)))

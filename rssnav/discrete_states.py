@@ -17,6 +17,7 @@ from rssnav.arguments import require
 from rssnav.kernels.q_learning_from_readings import BY_CELL, INTERVALS, TOLERANCE, Sensor
 
 MIN_THRESHOLD_DB = 1e-3
+MAX_INTERVALS = 1_000_000
 _FLUCTUATION_RANGE = 9.0  # standard deviations; Box-Muller from 53 bits ends at 8.6
 
 
@@ -83,10 +84,10 @@ class IntervalStates:
     @classmethod
     def uniform(cls, low_dbm: float, high_dbm: float, width_db: float) -> IntervalStates:
         """Intervals of equal width from ``low_dbm`` up to ``high_dbm`` or just above."""
-        if not (width_db > 0.0 and high_dbm > low_dbm):
+        if not (width_db > 0.0 and low_dbm < high_dbm <= low_dbm + MAX_INTERVALS * width_db):
             raise ValueError(
                 f"intervals of {width_db!r} dB from {low_dbm!r} to {high_dbm!r} dBm: expected "
-                "a positive width and the upper end above the lower"
+                f"a positive width, rising ends and at most {MAX_INTERVALS} of them"
             )
         count = math.ceil((high_dbm - low_dbm) / width_db) + 1
         return cls(tuple(low_dbm + width_db * k for k in range(count)))

@@ -36,6 +36,7 @@ ACTIONS: NDArray[np.int64] = np.array(
 """Cells moved along (x, y) by each action at speed 1, shape (8, 2)."""
 
 GOAL_DISTANCE_M = 2.0
+MAX_SPEED = 1_000_000
 _SPEEDS_TRIED = range(1, 9)
 
 
@@ -248,9 +249,14 @@ def _start_cell(plan: FloorPlan, radio_map: RadioMap) -> int:
 
 
 def _check_speed(speed: object) -> None:
-    if isinstance(speed, bool) or not isinstance(speed, int | np.integer) or speed < 1:
+    if (
+        isinstance(speed, bool)
+        or not isinstance(speed, int | np.integer)
+        or not 1 <= speed <= MAX_SPEED
+    ):
         raise WorldError(
-            f"speed: {speed!r} is not a positive whole number of cells a step; use 1, 2, 4, ..."
+            f"speed: {speed!r} is not a positive whole number of cells a step; use 1, 2, 4, ... "
+            f"up to {MAX_SPEED}"
         )
 
 

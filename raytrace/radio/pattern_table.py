@@ -46,11 +46,13 @@ class PatternTable:
 
     def __post_init__(self) -> None:
         """Check the grid; raise `AntennaError` where it does not cover the sphere."""
-        shape = (len(self.theta_deg), len(self.phi_deg))
+        shape = (np.size(self.theta_deg), np.size(self.phi_deg))
         for key, values, last in (
             ("theta_deg", self.theta_deg, 180.0),
             ("phi_deg", self.phi_deg, 360.0),
         ):
+            if np.ndim(values) != 1 or np.size(values) < 2:
+                raise AntennaError(f"{self.name}: {key} of shape {np.shape(values)}: expected (n,)")
             ends = np.abs(np.array([values[0], values[-1]]) - (0.0, last))
             if not (np.diff(values) > 0.0).all() or ends.max() > TOLERANCE_DEG:
                 raise AntennaError(
