@@ -49,12 +49,12 @@ def sound_content(path: Path) -> bytes:
     if size > MAX_FILE_BYTES:
         raise Hdf5ContentError(f"{size} bytes; at most {MAX_FILE_BYTES} are read")
     content = path.read_bytes()
-    if not content.startswith(HDF5_SIGNATURE):
-        raise Hdf5ContentError("not an HDF5 file")
     body, mark, digest = content.rpartition(HASH_MARK)
     if mark and len(digest) == _HASH_BYTES:
         if hashlib.sha256(body).digest() != digest:
             raise Hdf5ContentError("the content has changed since it was written")
+    elif not content.startswith(HDF5_SIGNATURE):
+        raise Hdf5ContentError("not an HDF5 file")
     elif _end_of_hdf5(content) not in (None, len(content)):
         raise Hdf5ContentError("the end of the file is damaged")
     for found in re.finditer(rb"GCOL\x01", content):
