@@ -106,7 +106,8 @@ def _panel_triangles(wall: Wall, panel: Panel) -> Triangles:
 
 def slab_triangles(outline: Polygon, z: float) -> Triangles:
     """Triangles of a floor slab that face upwards; their vertices are the outline's corners."""
-    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(outline))
+    distinct = shapely.remove_repeated_points(outline)  # GEOS fails for corners given many times
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(distinct))
     rings = [shapely.get_coordinates(shapely.orient_polygons(part))[:3] for part in parts]
     plan_view = np.stack(rings)
     return np.concatenate([plan_view, np.full((*plan_view.shape[:2], 1), z)], axis=2)

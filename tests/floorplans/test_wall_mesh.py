@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 from hypothesis import given, settings
-from small_plans import ROOM, box_around_courtyard, plans
+from shapely.geometry import Polygon
+from small_plans import ROOM, box, box_around_courtyard, plans
 
 import floorplans
 from floorplans import MATERIAL_COLOURS, FloorPlan, Opening, SheetMaterial, Wall
@@ -136,3 +137,9 @@ def test_export_keeps_faces_and_area(suffix: str, tmp_path) -> None:
     assert len(again.faces) == len(mesh.faces)
     assert again.area == pytest.approx(mesh.area, rel=1e-6)
     np.testing.assert_allclose(again.bounds, mesh.bounds, atol=1e-6)
+
+
+def test_corner_given_many_times_is_one_corner() -> None:
+    corners = [(0, 0), *[(6, 0)] * 26, (6, 4), (0, 4)]
+    areas = box(outline=Polygon(corners)).to_mesh().mesh.area_faces
+    assert areas.sum() == pytest.approx(box().to_mesh().mesh.area_faces.sum())
