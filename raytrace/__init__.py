@@ -7,7 +7,15 @@ ends in ``_db`` or ``_dbm``.
 """
 
 from raytrace.config import TraceConfig
-from raytrace.errors import AntennaError, MapFileError, MissingMapError, SceneError, SceneWarning
+from raytrace.errors import (
+    AntennaError,
+    MapFileError,
+    MemoryLimitError,
+    MissingMapError,
+    SceneError,
+    SceneWarning,
+    TraceStoppedError,
+)
 from raytrace.grid import Grid
 from raytrace.radio.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
 from raytrace.radio.materials import (
@@ -43,6 +51,7 @@ __all__ = [
     "Layered",
     "MapFileError",
     "Material",
+    "MemoryLimitError",
     "MissingMapError",
     "PathStatistics",
     "Paths",
@@ -52,6 +61,7 @@ __all__ = [
     "SceneError",
     "SceneWarning",
     "TraceConfig",
+    "TraceStoppedError",
     "Transmitter",
     "compute_radio_map",
     "estimate_cost",

@@ -14,6 +14,7 @@ from raytrace.config import TraceConfig
 from raytrace.errors import SceneWarning
 from raytrace.grid import Grid
 from raytrace.kernels.sums import Sums
+from raytrace.memory import memory_limit
 from raytrace.radio.antennas import Antenna, HalfWaveDipole
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.layers import layers_of
@@ -22,8 +23,11 @@ from raytrace.results.radio_map import RadioMap
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import Progress, sum_paths
 from raytrace.solver.evaluation import evaluation_of
-from raytrace.solver.extruded_classes import path_classes
-from raytrace.solver.setup import prepare
+from raytrace.solver.extruded_classes import COPIES_OF_PATHS, cells_bytes, path_classes
+from raytrace.solver.limits import taking
+from raytrace.solver.path_class import Evaluation
+from raytrace.solver.setup import Tracing, prepare
+from raytrace.solver.workers import Stop, Workers
 
 TRACER_VERSION = 4
 """Grows whenever the same scene would give another map."""
@@ -36,6 +40,8 @@ def trace_paths(
     config: TraceConfig | None = None,
     *,
     receive_antenna: Antenna | None = None,
+    stop: Stop | None = None,
+    max_memory_bytes: int | None = None,
 ) -> Paths:
     """Find every path to the given receivers.
 
@@ -49,6 +55,8 @@ def trace_paths(
         How many reflections and diffractions; 6 and 1 by default.
     receive_antenna
         The receivers' antenna; a vertical half-wave dipole of 0 dB peak gain by default.
+    stop, max_memory_bytes
+        As for `compute_radio_map`.
 
     Returns
     -------
@@ -59,14 +67,27 @@ def trace_paths(
     ------
     SceneError
         Where the transmitter is not inside the building.
+    TraceStoppedError, MemoryLimitError
+        As for `compute_radio_map`.
     """
     receivers = np.array(receivers, dtype=np.float64)
     if receivers.ndim != 2 or receivers.shape[1] != 3 or not np.isfinite(receivers).all():
         raise ValueError(f"receivers of shape {receivers.shape}: expected finite numbers (n, 3)")
     config = config or TraceConfig()
     evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
-    classes = path_classes(prepare(scene, transmitter.position, receivers, config))
-    found = [path_class.list_paths(evaluation) for path_class in classes]
+    with Workers(1, stop) as workers:
+        guard = workers.guard(memory_limit(max_memory_bytes))
+        position = transmitter.position
+        tracing = workers.run(prepare, scene, position, receivers, config, guard)
+        return workers.run(_list_paths, tracing, evaluation)
+
+
+def _list_paths(tracing: Tracing, evaluation: Evaluation) -> Paths:
+    found: list[Paths] = []
+    for path_class in path_classes(tracing):
+        found.append(path_class.list_paths(evaluation))
+        most_bytes = COPIES_OF_PATHS * sum(paths.vertices.nbytes for paths in found)
+        taking(tracing.guard, most_bytes, "the paths")
     return (
         Paths(*(np.concatenate([getattr(p, f.name) for p in found]) for f in fields(Paths)))
         .with_halves_joined()
@@ -84,6 +105,8 @@ def compute_radio_map(
     receive_antenna: Antenna | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
+    stop: Stop | None = None,
+    max_memory_bytes: int | None = None,
 ) -> RadioMap:
     """Sum every path at each cell of a grid.
 
@@ -99,11 +122,20 @@ def compute_radio_map(
         How many; all processors by default. The map does not depend on it.
     progress
         Called with the number of finished parts of the work and of all parts.
+    stop
+        Called many times a second, such as `threading.Event.is_set`; where it returns True, the
+        trace ends, within a kernel too.
+    max_memory_bytes
+        Most memory for receivers, sums, beams and legs [bytes]; by default half of what is free.
 
     Raises
     ------
     SceneError
         Where the transmitter is not inside the building.
+    TraceStoppedError
+        Where `stop` has ended the trace.
+    MemoryLimitError
+        Where it needs more than `max_memory_bytes`.
 
     Warns
     -----
@@ -113,12 +145,17 @@ def compute_radio_map(
     """
     started = time.perf_counter()
     config = config or TraceConfig()
-    points = grid.points()
     evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
-    classes = path_classes(prepare(scene, transmitter.position, points, config))
-    sums = sum_paths(
-        classes, evaluation, max_paths=config.max_paths, threads=threads, progress=progress
-    )
+    with Workers(threads, stop) as workers:
+        guard = workers.guard(memory_limit(max_memory_bytes))
+        needed_bytes = cells_bytes(scene, grid.x.size * grid.y.size, config, workers.n)
+        guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
+        points = grid.points()
+        tracing = workers.run(prepare, scene, transmitter.position, points, config, guard)
+        classes = path_classes(tracing.shared_by(workers.n))
+        sums = sum_paths(
+            workers, classes, evaluation, max_paths=config.max_paths, progress=progress
+        )
     straight_m = np.linalg.norm(points - np.array(transmitter.position), axis=1)
     _warn_of_near_cells(sums, points)
     layers = layers_of(sums, straight_m, transmitter.power_dbm)

@@ -21,6 +21,7 @@ from raytrace.kernels.beams import (
     narrowed,
 )
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.guard import Guard, is_stopped, may_hold
 from raytrace.kernels.lanes import WIDTH, Lanes, any_of, lanes_of, load, minimum, store
 from raytrace.kernels.plan_view import GRAZING_M, PARTIAL, PlanView, cross
 from raytrace.kernels.rows import enlarged, resized
@@ -61,6 +62,13 @@ class Hits(NamedTuple):
 
     pair: Int32s
     weight: Floats
+
+
+HIT_BYTES = 2 * 4 + 8
+"""Size of a row of `Hits`."""
+
+PARTIAL_HIT_BYTES = 2 * 4 + 2 * 8
+"""Size of a partial wall that a beam meets, see `hit_partial_walls`."""
 
 
 def no_hits() -> Hits:
@@ -162,7 +170,7 @@ def most_edges(view: PlanView) -> int:
 
 
 def hit_points(
-    view: PlanView, tree: Tree, targets: Targets, beams: Ints, max_hits: int
+    view: PlanView, tree: Tree, targets: Targets, beams: Ints, max_hits: int, guard: Guard
 ) -> tuple[Hits, int]:
     """Find the points within beams, beam after beam.
 
@@ -172,30 +180,37 @@ def hit_points(
         The plan view, the beams and the points.
     beams, max_hits
         Which beams, and the number of hits after which no further beam is taken.
+    guard
+        May end the search.
 
     Returns
     -------
     hits, done
         The hits, and how many of the beams were taken.
     """
-    pair, weight, done = hit_point_arrays(view, tree, targets, beams, max_hits)
+    pair, weight, done = hit_point_arrays(view, tree, targets, beams, max_hits, guard)
     return Hits(pair, weight), done
 
 
 @jit()
 def hit_point_arrays(
-    view: PlanView, tree: Tree, targets: Targets, beams: Ints, max_hits: int
+    view: PlanView, tree: Tree, targets: Targets, beams: Ints, max_hits: int, guard: Guard
 ) -> tuple[Int32s, Floats, int]:
     """Arrays of `hit_points`."""
     pair, weight = np.empty((1024, 2), np.int32), np.empty((1024, 1))
     normals, inside = np.empty((2 + most_edges(view), 2)), np.empty(WIDTH)
     n = done = 0
-    while done < len(beams) and n < max_hits:
+    while done < len(beams) and n < max_hits and not is_stopped(guard):
         i = int(beams[done])
-        done += 1
         cell, is_root = tree.link[i, CELL], tree.link[i, EDGE] < 0
-        last = targets.cell_points[cell + 1]
-        for k in range(targets.cell_points[cell], last, WIDTH):
+        first, last = targets.cell_points[cell], targets.cell_points[cell + 1]
+        needed = n + last - first
+        if not may_hold(guard, needed, len(pair), HIT_BYTES):
+            break
+        while needed > len(pair):
+            pair, weight = enlarged(pair), enlarged(weight)
+        done += 1
+        for k in range(first, last, WIDTH):
             nearest = lanes_of(math.inf)
             if not is_root:
                 x, y = load(targets.x[k:]), load(targets.y[k:])
@@ -203,8 +218,6 @@ def hit_point_arrays(
                 if not any_of(nearest > -GRAZING_M):
                     continue
             store(inside, nearest)
-            if n + WIDTH > len(pair):
-                pair, weight = enlarged(pair), enlarged(weight)
             for at in range(k, min(k + WIDTH, last)):
                 if inside[at - k] <= -GRAZING_M:
                     continue
@@ -219,39 +232,45 @@ def hit_point_arrays(
     return resized(pair, n), resized(weight, n)[:, 0], done
 
 
-def hit_corners(view: PlanView, tree: Tree) -> Hits:
-    """Find the corners of cells within beams, as vertex numbers.
+def hit_corners(view: PlanView, tree: Tree, guard: Guard) -> tuple[Hits, bool]:
+    """Find the corners of cells within beams, as vertex numbers; return whether they are all.
 
     The ends of the edge a beam came through were found before it; the ends of the edge it was
     mirrored at are no reflection.
     """
-    return Hits(*hit_corner_arrays(view, tree))
+    pair, weight, is_whole = hit_corner_arrays(view, tree, guard)
+    return Hits(pair, weight), is_whole
 
 
 @jit()
-def hit_corner_arrays(view: PlanView, tree: Tree) -> tuple[Int32s, Floats]:
+def hit_corner_arrays(view: PlanView, tree: Tree, guard: Guard) -> tuple[Int32s, Floats, bool]:
     """Arrays of `hit_corners`."""
     pair, weight = np.empty((1024, 2), np.int32), np.empty((1024, 1))
     normals = np.empty((2, 2))
-    n = 0
-    for i in range(len(tree.link)):
-        cell, entry = tree.link[i, CELL], tree.link[i, EDGE]
-        for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
+    n = done = 0
+    while done < len(tree.link) and not is_stopped(guard):
+        i, cell, entry = done, tree.link[done, CELL], tree.link[done, EDGE]
+        first, last = view.cell_edges[cell], view.cell_edges[cell + 1]
+        needed = n + last - first
+        if not may_hold(guard, needed, len(pair), HIT_BYTES):
+            break
+        while needed > len(pair):
+            pair, weight = enlarged(pair), enlarged(weight)
+        done += 1
+        for e in range(first, last):
             v = view.vertex[e, 0]
             if entry >= 0 and (v == view.vertex[entry, 0] or v == view.vertex[entry, 1]):
                 continue
             visible = visible_weight(view, tree, i, view.ends[e, 0], view.ends[e, 1], -1, normals)
             if visible == 0.0:
                 continue
-            if n == len(pair):
-                pair, weight = enlarged(pair), enlarged(weight)
             pair[n, 0], pair[n, 1], weight[n, 0] = v, i, visible
             n += 1
-    return resized(pair, n), resized(weight, n)[:, 0]
+    return resized(pair, n), resized(weight, n)[:, 0], done == len(tree.link)
 
 
 @jit()
-def hit_partial_walls(view: PlanView, tree: Tree) -> tuple[Int32s, Floats]:
+def hit_partial_walls(view: PlanView, tree: Tree, guard: Guard) -> tuple[Int32s, Floats, bool]:
     """Find the partial walls that beams meet.
 
     Returns
@@ -260,26 +279,33 @@ def hit_partial_walls(view: PlanView, tree: Tree) -> tuple[Int32s, Floats]:
         (n, 2) edge and beam.
     interval
         (n, 2) the part of the edge within the beam, as fractions of its length from its start.
+    is_whole
+        Whether these are all.
     """
     hits = np.empty((1024, 2), np.int32)
     interval = np.empty((1024, 2))
-    n = 0
-    for i in range(len(tree.link)):
-        cell = tree.link[i, CELL]
-        for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
+    n = done = 0
+    while done < len(tree.link) and not is_stopped(guard):
+        i, cell = done, tree.link[done, CELL]
+        first, last = view.cell_edges[cell], view.cell_edges[cell + 1]
+        needed = n + last - first
+        if not may_hold(guard, needed, len(hits), PARTIAL_HIT_BYTES):
+            break
+        while needed > len(hits):
+            hits, interval = enlarged(hits), enlarged(interval)
+        done += 1
+        for e in range(first, last):
             if view.kind[e] != PARTIAL:
                 continue
             meets, (rx, ry, lx, ly) = narrowed(view, tree.link[i, EDGE], tree.beam[i], e)
             if not meets:
                 continue
-            if n == len(hits):
-                hits, interval = enlarged(hits), enlarged(interval)
             hits[n, 0] = e
             hits[n, 1] = i
             interval[n, 0] = fraction(view, tree.beam[i], e, rx, ry)
             interval[n, 1] = fraction(view, tree.beam[i], e, lx, ly)
             n += 1
-    return resized(hits, n), resized(interval, n)
+    return resized(hits, n), resized(interval, n), done == len(tree.link)
 
 
 @jit(inline=True)

@@ -11,6 +11,7 @@ import numpy as np
 
 from raytrace.arrays import Floats, Int32s, Ints
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.guard import Guard, is_stopped, may_hold
 from raytrace.kernels.plan_view import GRAZING_M, PlanView, cross, mirrored
 from raytrace.kernels.rows import copy_row, enlarged, resized
 
@@ -22,6 +23,9 @@ through and partial walls so far."""
 
 IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y = range(6)
 """Columns of `Tree.beam` [m]: the root's image, and the corners of the window."""
+
+BEAM_BYTES = 8 * 4 + 6 * 8
+"""Size of a row of `Tree`."""
 
 Window = tuple[float, float, float, float]
 """Right and left corner of a window: x, y, x, y [m]."""
@@ -40,7 +44,8 @@ def grow_tree(
     root: tuple[float, float],
     root_cells: Ints,
     limits: tuple[int, int],
-) -> Tree:
+    guard: Guard,
+) -> tuple[Tree, bool]:
     """Grow all beams from a point.
 
     Parameters
@@ -57,8 +62,16 @@ def grow_tree(
     limits
         Maximum numbers of reflections, those required at floor and ceiling included, and of
         transmissions through full walls.
+    guard
+        May end the growth.
+
+    Returns
+    -------
+    tree, is_whole
+        The beams, and whether they are all; otherwise there are none.
     """
-    return Tree(*grow_tree_arrays(view, bounces, root, root_cells, limits))
+    link, beam, is_whole = grow_tree_arrays(view, bounces, root, root_cells, limits, guard)
+    return Tree(link, beam), is_whole
 
 
 @jit()
@@ -68,7 +81,8 @@ def grow_tree_arrays(
     root: tuple[float, float],
     root_cells: Ints,
     limits: tuple[int, int],
-) -> tuple[Int32s, Floats]:
+    guard: Guard,
+) -> tuple[Int32s, Floats, bool]:
     """Arrays of `grow_tree`."""
     link = np.zeros((256 + len(root_cells), 8), np.int32)
     beam = np.zeros((256 + len(root_cells), 6))
@@ -78,12 +92,17 @@ def grow_tree_arrays(
         link[n, CELL] = cell
         beam[n, IMAGE_X], beam[n, IMAGE_Y] = root
         n += 1
-    while i < n:
-        while n + most_children(view, link[i, CELL]) > len(link):
+    while i < n and not is_stopped(guard):
+        needed = n + most_children(view, link[i, CELL])
+        if not may_hold(guard, needed, len(link), BEAM_BYTES):
+            break
+        while needed > len(link):
             link, beam = enlarged(link), enlarged(beam)
         n = split(view, bounces, link, beam, i, n, limits)
         i += 1
-    return resized(link, n), resized(beam, n)
+    is_whole = i == n
+    n = n if is_whole else 0
+    return resized(link, n), resized(beam, n), is_whole
 
 
 @jit(inner=True)

@@ -12,6 +12,7 @@ from raytrace.kernels.bounds import free_space
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.guard import is_stopped
 from raytrace.kernels.horizontal_edge_field import edge_gain, hypot
 from raytrace.kernels.horizontal_edge_legs import (
     EdgePath,
@@ -147,7 +148,7 @@ def sum_horizontal_edge(
     z_in, bounces = geometry.transmitter_z, geometry.image_bounces
     trees = beams.tree, beams.strips
     first = int(np.int64(0))  # a literal would be compiled as a type of its own
-    while first < len(hits.pair):
+    while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
         seen = seen_from(edge, beams.seen, block, work)
@@ -155,7 +156,7 @@ def sum_horizontal_edge(
         for p in range(len(images.order)):
             order = beams.strips.link[block.beam, ORDER] + images.order[p]
             budget = geometry.max_reflections - order
-            if budget < 0:
+            if budget < 0 or is_stopped(collector.guard):
                 break
             low, high = maximum(seen.low, images.low[p]), minimum(seen.high, images.high[p])
             weight_here = where(high - low > GRAZING_M, block.weight, 0.0)

@@ -7,6 +7,7 @@ from raytrace.kernels.beams import Tree
 from raytrace.kernels.building import Building, TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import STOREY_TOLERANCE
+from raytrace.kernels.guard import Guard, is_stopped
 from raytrace.kernels.horizontal_edge_legs import (
     EdgeWorkspace,
     HorizontalEdgeBeams,
@@ -146,11 +147,14 @@ def reflection_points(
     record: Record,
     points: Floats,
     kinds: Int8s,
+    guard: Guard,
 ) -> None:
     """Write points (n, k, 3) and interactions (n, k - 2) of recorded reflection paths."""
     building, receivers, hits = geometry.building, geometry.receivers, beams.hits
     z = geometry.transmitter[2]
     for path in range(record.used[0]):
+        if is_stopped(guard):
+            break
         r, i = hits.pair[record.key[path, 0], 0], hits.pair[record.key[path, 0], 1]
         end = (receivers.xy[r, 0], receivers.xy[r, 1])
         n, length = unfold_one(building.plan, beams.tree, i, end, leg)
@@ -169,12 +173,15 @@ def vertical_edge_points(
     record: Record,
     points: Floats,
     kinds: Int8s,
+    guard: Guard,
 ) -> None:
     """Write points and interactions of recorded paths over a vertical edge."""
     building, receivers = geometry.building, geometry.receivers
     edge, legs, hits = beams.edge, beams.legs, beams.hits
     z = geometry.transmitter[2]
     for path in range(record.used[0]):
+        if is_stopped(guard):
+            break
         hit, p = record.key[path, 0], record.key[path, 1]
         leg_in = Leg(legs.interactions[p], legs.types[p])
         n_in, length_in = int(legs.n_interactions[p]), float(legs.length[p])
@@ -202,12 +209,15 @@ def horizontal_edge_points(
     record: Record,
     points: Floats,
     kinds: Int8s,
+    guard: Guard,
 ) -> None:
     """Write points and interactions of recorded paths over a horizontal edge."""
     building, receivers = geometry.building, geometry.receivers
     edge, images, hits, seen = beams.edge, beams.images, beams.hits, beams.seen
     trees = beams.tree, beams.strips
     for path in range(record.used[0]):
+        if is_stopped(guard):
+            break
         hit, p = int(record.key[path, 0]), int(record.key[path, 1])
         a, b = int(record.key[path, 2]), int(record.key[path, 3])
         r, i = hits.pair[hit, 0], hits.pair[hit, 1]

@@ -13,6 +13,7 @@ from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
 from raytrace.kernels.field_tables import FieldTables, phasor
+from raytrace.kernels.guard import is_stopped
 from raytrace.kernels.lanes import all_false, any_of, lanes_of, load
 from raytrace.kernels.records import record_paths
 from raytrace.kernels.sums import empty_bundle, with_path
@@ -67,7 +68,7 @@ def sum_reflections(
     z_transmitter = geometry.transmitter[2]
     z_root = lanes_of(z_transmitter)
     zero = first = int(np.int64(0))  # a literal would be compiled as a type of its own
-    while first < len(hits.pair):
+    while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
         i = block.beam

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Floats, Int32s, Ints
-from raytrace.kernels.beam_hits import Hits, Targets
+from raytrace.kernels.beam_hits import HIT_BYTES, Hits, Targets
 from raytrace.kernels.beams import (
     BOUNCES,
     CELL,
@@ -25,6 +25,7 @@ from raytrace.kernels.beams import (
     most_children,
 )
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.guard import Guard, is_stopped, may_hold
 from raytrace.kernels.lanes import (
     WIDTH,
     Lanes,
@@ -67,6 +68,10 @@ class StripTree(NamedTuple):
     frame: Floats
     first: Ints
     rays: Floats
+
+
+STRIP_BYTES, RAY_BYTES, SEEN_BYTES = 8 * 4 + 7 * 8 + 8, 2 * 8, 4 * 8
+"""Sizes of a beam without its corners, of a corner, and of a row of `seen` (`hit_from_strip`)."""
 
 
 @jit()
@@ -268,8 +273,8 @@ def transmit_strip(
 
 
 def grow_strips(
-    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: tuple[int, int]
-) -> StripTree:
+    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: tuple[int, int], guard: Guard
+) -> tuple[StripTree, bool]:
     """Grow all beams from one side of an edge.
 
     Parameters
@@ -280,14 +285,22 @@ def grow_strips(
         The edge, as seen from the cell that the beams go into.
     limits
         Maximum numbers of reflections and of transmissions through full walls.
+    guard
+        May end the growth.
+
+    Returns
+    -------
+    strips, is_whole
+        The beams, and whether they are all; otherwise there are none.
     """
-    return StripTree(*grow_strip_arrays(view, bounces, root, root_cell, limits))
+    *arrays, is_whole = grow_strip_arrays(view, bounces, root, root_cell, limits, guard)
+    return StripTree(*arrays), is_whole
 
 
 @jit()
 def grow_strip_arrays(
-    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: tuple[int, int]
-) -> tuple[Int32s, Floats, Ints, Floats]:
+    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: tuple[int, int], guard: Guard
+) -> tuple[Int32s, Floats, Ints, Floats, bool]:
     """Arrays of `grow_strips`."""
     link = np.zeros((256, 8), np.int32)
     frame = np.empty((256, 7))
@@ -303,24 +316,31 @@ def grow_strip_arrays(
     first[1, 0] = 4
     i = int(np.int64(0))  # a literal would be compiled as a type of its own
     n = i + 1
-    while i < n:
-        children = most_children(view, link[i, CELL])
+    while i < n and not is_stopped(guard):
         corners = first[i + 1, 0] - first[i, 0] + 2
-        while n + children >= len(link):
+        n_beams = n + most_children(view, link[i, CELL]) + 1
+        n_rays = first[n, 0] + (n_beams - n - 1) * corners
+        if not may_hold(guard, n_beams, len(link), STRIP_BYTES):
+            break
+        if not may_hold(guard, n_rays, len(rays), RAY_BYTES):
+            break
+        while n_beams > len(link):
             link, frame, first = enlarged(link), enlarged(frame), enlarged(first)
-        while first[n, 0] + children * corners > len(rays):
+        while n_rays > len(rays):
             rays = enlarged(rays)
         while corners > len(out):
             work, out = enlarged(work), enlarged(out)
         tree = StripTree(link, frame, first[:, 0], rays)
         n = split_strip(view, bounces, tree, i, n, limits, (work, out))
         i += 1
+    is_whole = i == n
+    n = n if is_whole else 0
     first_ray = resized(first, n + 1)[:, 0]
-    return resized(link, n), resized(frame, n), first_ray, resized(rays, first[n, 0])
+    return resized(link, n), resized(frame, n), first_ray, resized(rays, first[n, 0]), is_whole
 
 
 def hit_from_strip(
-    tree: StripTree, targets: Targets, beams: Ints, max_hits: int
+    tree: StripTree, targets: Targets, beams: Ints, max_hits: int, guard: Guard
 ) -> tuple[Hits, Floats, int]:
     """Find the points within beams from a segment.
 
@@ -330,6 +350,8 @@ def hit_from_strip(
         The beams and the points.
     beams, max_hits
         Which beams, and the number of hits after which no further beam is taken.
+    guard
+        May end the search.
 
     Returns
     -------
@@ -341,24 +363,29 @@ def hit_from_strip(
     done
         How many of the beams were taken.
     """
-    pair, weight, seen, done = hit_strip_arrays(tree, targets, beams, max_hits)
+    pair, weight, seen, done = hit_strip_arrays(tree, targets, beams, max_hits, guard)
     return Hits(pair, weight), seen, done
 
 
 @jit()
 def hit_strip_arrays(
-    tree: StripTree, targets: Targets, beams: Ints, max_hits: int
+    tree: StripTree, targets: Targets, beams: Ints, max_hits: int, guard: Guard
 ) -> tuple[Int32s, Floats, Floats, int]:
     """Arrays of `hit_from_strip`."""
     pair, weight = np.empty((1024, 2), np.int32), np.empty((1024, 1))
     seen, rows = np.empty((1024, 4)), np.empty((4, WIDTH))
     n = done = 0
-    while done < len(beams) and n < max_hits:
+    while done < len(beams) and n < max_hits and not is_stopped(guard):
         i = int(beams[done])
-        done += 1
         cell, rays = tree.link[i, CELL], tree.rays[tree.first[i] : tree.first[i + 1]]
-        last = targets.cell_points[cell + 1]
-        for k in range(targets.cell_points[cell], last, WIDTH):
+        begin, last = targets.cell_points[cell], targets.cell_points[cell + 1]
+        needed = n + last - begin
+        if not may_hold(guard, needed, len(pair), HIT_BYTES + SEEN_BYTES):
+            break
+        while needed > len(pair):
+            pair, weight, seen = enlarged(pair), enlarged(weight), enlarged(seen)
+        done += 1
+        for k in range(begin, last, WIDTH):
             x, h = in_frame(tree.frame[i], load(targets.x[k:]), load(targets.y[k:]))
             low, high = interval_through(rays, x, h)
             visible = (high - low > SLIVER_M) & (h > GRAZING_M)
@@ -367,8 +394,6 @@ def hit_strip_arrays(
             low, high = where(visible, low, 0.0), where(visible, high, 0.0)
             for row, column in enumerate((x, h, low, high)):
                 store(rows[row], column)
-            if n + WIDTH > len(pair):
-                pair, weight, seen = enlarged(pair), enlarged(weight), enlarged(seen)
             for at in range(k, min(k + WIDTH, last)):
                 if rows[2, at - k] == rows[3, at - k]:
                     continue

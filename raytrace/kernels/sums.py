@@ -70,6 +70,11 @@ def new_sums(n_receivers: int, max_reflections: int) -> Sums:
     )
 
 
+def sums_bytes(n_receivers: int, max_reflections: int) -> int:
+    """Size of `Sums`."""
+    return 8 * (n_receivers * (max_reflections + 10) + LEVELS)
+
+
 def add_sums(total: Sums, part: Sums) -> None:
     """Add the sums over other paths to `total`."""
     strongest = np.maximum(total.moments[:, STRONGEST], part.moments[:, STRONGEST])

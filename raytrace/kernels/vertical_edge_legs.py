@@ -11,6 +11,7 @@ from raytrace.kernels.bounds import leg_bound
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.guard import Guard, is_stopped
 from raytrace.kernels.lanes import WIDTH, Lanes, lane, lanes_of
 from raytrace.kernels.plan_view import PlanView
 from raytrace.kernels.unfolding import Leg, has_height_limits, max_interactions, unfold
@@ -85,8 +86,18 @@ def angles_of(legs: LegsIn, p: int) -> FaceAngles:
     )  # fmt: skip
 
 
+def leg_bytes(tree: Tree) -> int:
+    """Size of a row of `LegsIn`."""
+    return 14 * 8 + max_interactions(tree.link) * (5 * WIDTH + 2) * 8
+
+
 def legs_to_edge(
-    view: PlanView, tree: Tree, beams: Int32s, weight: Floats, edge: VerticalEdgeArrays
+    view: PlanView,
+    tree: Tree,
+    beams: Int32s,
+    weight: Floats,
+    edge: VerticalEdgeArrays,
+    guard: Guard,
 ) -> LegsIn:
     """Unfold the legs from the transmitter to an edge.
 
@@ -99,6 +110,8 @@ def legs_to_edge(
     edge
         The edge; legs that arrive within its wall or along a face are left out: a face reflects
         a grazing ray with -1, so that the two cancel.
+    guard
+        May end the work.
     """
     n, n_max = len(beams), max_interactions(tree.link)
     legs = LegsIn(
@@ -112,7 +125,7 @@ def legs_to_edge(
         np.empty((n, n_max, 5, WIDTH)),
         np.empty((n, n_max, 2), np.int64),
     )
-    kept = fill_legs(view, tree, beams, weight, edge, legs)
+    kept = fill_legs(view, tree, beams, weight, edge, legs, guard)
     return LegsIn(
         legs.order[:kept],
         legs.n_interactions[:kept],
@@ -134,11 +147,14 @@ def fill_legs(
     weight: Floats,
     edge: VerticalEdgeArrays,
     legs: LegsIn,
+    guard: Guard,
 ) -> int:
     """Fill in legs as `legs_to_edge` makes them; return how many there are."""
     rows, kept = np.empty((3, WIDTH)), 0
     target = lanes_of(edge.x), lanes_of(edge.y)
     for b in range(len(beams)):
+        if is_stopped(guard):
+            break
         i = beams[b]
         dx, dy = tree.beam[i, IMAGE_X] - edge.x, tree.beam[i, IMAGE_Y] - edge.y
         phi = angle_from(math.atan2(dy, dx), edge.o_face)

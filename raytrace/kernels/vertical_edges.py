@@ -18,6 +18,7 @@ from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
 from raytrace.kernels.field_tables import FieldTables, phasor
+from raytrace.kernels.guard import is_stopped
 from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
@@ -301,7 +302,7 @@ def sum_vertical_edge(
     """
     edge, legs, hits = beams.edge, beams.legs, beams.hits
     first = int(np.int64(0))  # a literal would be compiled as a type of its own
-    while first < len(hits.pair):
+    while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
         out = legs_from_edge(geometry, beams, block, leg, workspace.rows)
@@ -312,7 +313,7 @@ def sum_vertical_edge(
         bundle = empty_bundle()
         for p in range(len(legs.order)):
             n_images = 2 * (geometry.max_reflections - out.order - legs.order[p]) + 1
-            if n_images < 0:
+            if n_images < 0 or is_stopped(collector.guard):
                 break
             pair = pair_of(tables, edge, legs, p, out)
             weight = off_edge * legs.weight[p]

@@ -7,6 +7,7 @@ import numpy as np
 
 from raytrace.arrays import Floats, Ints
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.guard import Guard
 from raytrace.kernels.lanes import WIDTH, Lanes, any_of, lane, lanes_of, load, store, where
 from raytrace.kernels.records import Record
 from raytrace.kernels.sums import EXCESS, FIRST_MOMENT, N_MOMENTS, STRONGEST, Bundle, Sums
@@ -21,11 +22,14 @@ class Collector(NamedTuple):
         Sums over paths, and single paths.
     min_power
         Paths whose power is known to be below this are left out [fraction of the transmitted].
+    guard
+        May end the work.
     """
 
     sums: Sums
     record: Record
     min_power: float
+    guard: Guard
 
 
 class Workspace(NamedTuple):

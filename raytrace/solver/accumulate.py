@@ -3,7 +3,7 @@
 import math
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from raytrace.arrays import Floats
 from raytrace.kernels.sums import Sums, add_sums
 from raytrace.solver.path_class import Evaluation, PathClass
-from raytrace.threads import n_threads
+from raytrace.solver.workers import Workers
 
 Progress = Callable[[int, int], None]
 """Called with the number of finished parts and of all parts."""
@@ -21,35 +21,39 @@ AHEAD = 4
 """Path classes in work, or waiting for their turn to be added, per thread."""
 
 
+def sums_in_work(n_classes: int, threads: int) -> int:
+    """Most `Sums` that exist at a time while the paths of some classes are summed."""
+    return min(n_classes, AHEAD * threads + 1) + 1
+
+
 def sum_paths(
+    workers: Workers,
     classes: Sequence[PathClass],
     evaluation: Evaluation,
     *,
     max_paths: int | None = None,
-    threads: int | None = None,
     progress: Progress | None = None,
 ) -> Sums:
     """Sum the paths of some classes at each receiver.
 
     Parameters
     ----------
+    workers
+        The threads; the result does not depend on how many there are.
     classes
         At least one; beams that were grown before are used again.
     evaluation
         Field tables and power threshold.
     max_paths
         Raise the power threshold to where no more paths than that are left; no limit by default.
-    threads
-        How many; all processors by default. The result does not depend on it.
     progress
         Called as classes are done.
     """
-    threads = n_threads(threads)
     if max_paths is not None:
-        bounded = _sum(classes, replace(evaluation, min_power=math.inf), threads, None)
+        bounded = _sum(workers, classes, replace(evaluation, min_power=math.inf), None)
         least = _min_power(bounded.bins, max_paths)
         evaluation = replace(evaluation, min_power=max(least, evaluation.min_power))
-    return _sum(classes, evaluation, threads, progress)
+    return _sum(workers, classes, evaluation, progress)
 
 
 def _min_power(bins: Floats, max_paths: int) -> float:
@@ -61,10 +65,13 @@ def _min_power(bins: Floats, max_paths: int) -> float:
 
 
 def _sum(
-    classes: Sequence[PathClass], evaluation: Evaluation, threads: int, progress: Progress | None
+    workers: Workers,
+    classes: Sequence[PathClass],
+    evaluation: Evaluation,
+    progress: Progress | None,
 ) -> Sums:
     """Sum classes as they are done, in their order."""
-    parts = _in_order(classes, evaluation, threads)
+    parts = _in_order(workers, classes, evaluation)
     total = next(parts)
     if progress is not None:
         progress(1, len(classes))
@@ -75,16 +82,14 @@ def _sum(
     return total
 
 
-def _in_order(classes: Sequence[PathClass], evaluation: Evaluation, threads: int) -> Iterator[Sums]:
+def _in_order(
+    workers: Workers, classes: Sequence[PathClass], evaluation: Evaluation
+) -> Iterator[Sums]:
     """Sums of each class, in their order, computed a few ahead."""
-    pool = ThreadPoolExecutor(threads)
-    try:
-        ahead: deque[Future[Sums]] = deque()
-        for path_class in classes:
-            ahead.append(pool.submit(path_class.sum_paths, evaluation))
-            if len(ahead) > AHEAD * threads:
-                yield ahead.popleft().result()
-        while ahead:
-            yield ahead.popleft().result()
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+    ahead: deque[Future[Sums]] = deque()
+    for path_class in classes:
+        ahead.append(workers.submit(path_class.sum_paths, evaluation))
+        if len(ahead) > AHEAD * workers.n:
+            yield workers.result(ahead.popleft())
+    while ahead:
+        yield workers.result(ahead.popleft())

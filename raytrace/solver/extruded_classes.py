@@ -6,10 +6,12 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from raytrace.arrays import Floats, Int8s, Ints
+from raytrace.config import TraceConfig
 from raytrace.geometry import edges
 from raytrace.kernels.beam_hits import Hits, hit_points, no_hits
 from raytrace.kernels.beams import ORDER, Tree, grow_tree
 from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.guard import Guard
 from raytrace.kernels.horizontal_edge_legs import (
     HorizontalEdgeArrays,
     HorizontalEdgeBeams,
@@ -26,25 +28,37 @@ from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.records import Record, new_record, no_record
 from raytrace.kernels.reflections import ReflectionBeams, sum_reflections
 from raytrace.kernels.strips import edge_frame, grow_strips, hit_from_strip
-from raytrace.kernels.sums import Sums, new_sums
+from raytrace.kernels.sums import Sums, new_sums, sums_bytes
 from raytrace.kernels.unfolding import new_leg
 from raytrace.kernels.vertical_edge_legs import (
     LegsIn,
     VerticalEdgeArrays,
     bounds_of_legs,
+    leg_bytes,
     legs_to_edge,
 )
 from raytrace.kernels.vertical_edges import VerticalEdgeBeams, sum_vertical_edge
 from raytrace.kernels.wedge import new_wedge
 from raytrace.kernels.workspace import Collector, new_workspace
 from raytrace.results.paths import Paths
+from raytrace.scene import Scene
+from raytrace.solver.accumulate import sums_in_work
+from raytrace.solver.limits import check_whole, nbytes, taking
 from raytrace.solver.path_class import Evaluation, PathClass
-from raytrace.solver.setup import Tracing
+from raytrace.solver.setup import BEAMS, Tracing
 
 HIT_BATCH = 1 << 17
 """Hits that are found and evaluated in one batch, which bounds the memory of large maps."""
 
 ALL_HITS = 1 << 62
+
+RECEIVER_BYTES = 240
+"""Memory of a receiver and of its results, without sums."""
+
+COPIES_OF_PATHS = 3
+"""Most copies of a list of paths that exist at a time, while it is sorted."""
+
+HITS, LEGS, PATHS = "the receivers within the beams", "the legs to an edge", "the paths"
 
 Beams = TypeVar("Beams", ReflectionBeams, VerticalEdgeBeams, HorizontalEdgeBeams)
 
@@ -65,7 +79,7 @@ class _BeamClass(ABC, Generic[Beams]):
         """Count the beams that receivers are visible from."""
 
     @abstractmethod
-    def _hit(self, beams: Beams, numbers: Ints, max_hits: int) -> tuple[Beams, int]:
+    def _hit(self, beams: Beams, numbers: Ints, max_hits: int, guard: Guard) -> tuple[Beams, int]:
         """Find receivers within some of the beams; return how many of the beams were taken."""
 
     @abstractmethod
@@ -79,6 +93,10 @@ class _BeamClass(ABC, Generic[Beams]):
     def _beams(self) -> Beams:
         return self._grow() if self._kept is None else self._kept
 
+    def _guard_beside(self, beams: Beams) -> Guard:
+        """Return the guard of what is found within these beams."""
+        return taking(self._tracing.guard, nbytes(beams, self._tracing.tree), BEAMS)
+
     def _new_sums(self) -> Sums:
         geometry = self._tracing.geometry
         return new_sums(len(geometry.receivers.xy), geometry.max_reflections)
@@ -91,30 +109,45 @@ class _BeamClass(ABC, Generic[Beams]):
     def sum_paths(self, evaluation: Evaluation, beams: Ints | None = None) -> Sums:
         """See `PathClass`."""
         grown, sums = self._beams(), self._new_sums()
-        collector = Collector(sums, no_record(), evaluation.min_power)
+        guard = self._guard_beside(grown)
+        collector = Collector(sums, no_record(), evaluation.min_power, guard)
         numbers = np.arange(self._n_beams(grown)) if beams is None else beams
         while len(numbers):
-            batch, done = self._hit(grown, numbers, HIT_BATCH)
+            batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
+            check_whole(guard, done > 0, HITS)
             self._evaluate(batch, evaluation.tables, collector)
             numbers = numbers[done:]
+        check_whole(guard, True, HITS)
         return sums
 
     def list_paths(self, evaluation: Evaluation) -> Paths:
         """See `PathClass`; the paths are counted first, then recorded."""
         grown = self._beams()
-        beams, _ = self._hit(grown, np.arange(self._n_beams(grown)), ALL_HITS)
+        guard, n_beams = self._guard_beside(grown), self._n_beams(grown)
+        beams, done = self._hit(grown, np.arange(n_beams), ALL_HITS, guard)
+        check_whole(guard, done == n_beams, HITS)
         record = new_record(0)
         for _ in range(2):
+            taking(guard, int(record.used[0]) * self._path_bytes(), PATHS)
             record = new_record(int(record.used[0]))
-            collector = Collector(self._new_sums(), record, evaluation.min_power)
+            collector = Collector(self._new_sums(), record, evaluation.min_power, guard)
             self._evaluate(beams, evaluation.tables, collector)
+            check_whole(guard, True, PATHS)
         return self._paths(beams, record)
 
+    def _max_interactions(self) -> int:
+        config = self._tracing.config
+        return config.max_reflections + config.max_diffractions + config.max_transmissions
+
+    def _path_bytes(self) -> int:
+        """Size of a path with its record, and of all its copies."""
+        return COPIES_OF_PATHS * (25 * (self._max_interactions() + 2) + 100)
+
     def _paths(self, beams: Beams, record: Record) -> Paths:
-        n, config = len(record.gain), self._tracing.config
-        n_max = config.max_reflections + config.max_diffractions + config.max_transmissions
+        n, n_max = len(record.gain), self._max_interactions()
         points, kinds = np.zeros((n, n_max + 2, 3)), np.zeros((n, n_max), np.int8)
         self._write_points(beams, record, points, kinds)
+        check_whole(self._tracing.guard, True, PATHS)
         length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
         receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
         return Paths(receiver, kinds, points, length, record.gain, record.weight)
@@ -130,9 +163,9 @@ class Reflections(_BeamClass[ReflectionBeams]):
         return len(beams.tree.link)
 
     def _hit(
-        self, beams: ReflectionBeams, numbers: Ints, max_hits: int
+        self, beams: ReflectionBeams, numbers: Ints, max_hits: int, guard: Guard
     ) -> tuple[ReflectionBeams, int]:
-        hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits)
+        hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits, guard)
         return beams._replace(hits=hits), done
 
     def _evaluate(self, beams: ReflectionBeams, tables: FieldTables, collector: Collector) -> None:
@@ -144,7 +177,8 @@ class Reflections(_BeamClass[ReflectionBeams]):
         self, beams: ReflectionBeams, record: Record, points: Floats, kinds: Int8s
     ) -> None:
         leg = new_leg(beams.tree.link)
-        reflection_points(self._tracing.geometry, beams, leg, record, points, kinds)
+        t = self._tracing
+        reflection_points(t.geometry, beams, leg, record, points, kinds, t.guard)
 
 
 class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
@@ -163,7 +197,10 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
         mine = np.flatnonzero(corners.pair[:, 0] == self._vertex)
         mine = mine[np.argsort(tree.link[corners.pair[mine, 1], ORDER], kind="stable")]
         beams, weight = corners.pair[mine, 1], corners.weight[mine]
-        return legs_to_edge(self._tracing.scene.view, tree, beams, weight, self._edge)
+        guard = taking(self._tracing.guard, len(beams) * leg_bytes(tree), LEGS)
+        legs = legs_to_edge(self._tracing.scene.view, tree, beams, weight, self._edge, guard)
+        check_whole(guard, True, LEGS)
+        return legs
 
     def _grow(self) -> VerticalEdgeBeams:
         t, legs = self._tracing, self._legs_in()
@@ -171,16 +208,18 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
         if len(legs.order):
             limits = (t.config.max_reflections - int(legs.order[0]), t.config.max_transmissions)
             root = (self._edge.x, self._edge.y)
-            tree = grow_tree(t.scene.view, t.bounces, root, self._cells, limits)
+            guard = taking(t.guard, nbytes(legs), LEGS)
+            tree, is_whole = grow_tree(t.scene.view, t.bounces, root, self._cells, limits, guard)
+            check_whole(guard, is_whole, BEAMS)
         return VerticalEdgeBeams(self._edge, legs, tree, no_hits())
 
     def _n_beams(self, beams: VerticalEdgeBeams) -> int:
         return len(beams.tree.link)
 
     def _hit(
-        self, beams: VerticalEdgeBeams, numbers: Ints, max_hits: int
+        self, beams: VerticalEdgeBeams, numbers: Ints, max_hits: int, guard: Guard
     ) -> tuple[VerticalEdgeBeams, int]:
-        hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits)
+        hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits, guard)
         return beams._replace(hits=hits), done
 
     def _evaluate(
@@ -196,7 +235,8 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
         self, beams: VerticalEdgeBeams, record: Record, points: Floats, kinds: Int8s
     ) -> None:
         leg = new_leg(beams.tree.link)
-        vertical_edge_points(self._tracing.geometry, beams, leg, record, points, kinds)
+        t = self._tracing
+        vertical_edge_points(t.geometry, beams, leg, record, points, kinds, t.guard)
 
 
 def _heights(edge: edges.VerticalEdge, height_m: float) -> tuple[float, float]:
@@ -241,17 +281,19 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
         t, view, images = self._tracing, self._tracing.scene.view, self._images_in()
         cell = int(np.searchsorted(view.cell_edges, self._near, side="right")) - 1
         limits = (t.config.max_reflections - int(images.order[0]), t.config.max_transmissions)
-        strips = grow_strips(view, t.bounces, self._near, cell, limits)
+        guard = taking(t.guard, nbytes(images), LEGS)
+        strips, is_whole = grow_strips(view, t.bounces, self._near, cell, limits, guard)
+        check_whole(guard, is_whole, BEAMS)
         return HorizontalEdgeBeams(self._edge, t.tree, images, strips, no_hits(), np.empty((0, 4)))
 
     def _n_beams(self, beams: HorizontalEdgeBeams) -> int:
         return len(beams.strips.link)
 
     def _hit(
-        self, beams: HorizontalEdgeBeams, numbers: Ints, max_hits: int
+        self, beams: HorizontalEdgeBeams, numbers: Ints, max_hits: int, guard: Guard
     ) -> tuple[HorizontalEdgeBeams, int]:
         targets = self._tracing.targets
-        hits, seen, done = hit_from_strip(beams.strips, targets, numbers, max_hits)
+        hits, seen, done = hit_from_strip(beams.strips, targets, numbers, max_hits, guard)
         return beams._replace(hits=hits, seen=seen), done
 
     def _evaluate(
@@ -266,11 +308,20 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
     ) -> None:
         geometry = self._tracing.geometry
         work = new_edge_workspace(geometry.max_reflections, beams.tree, beams.strips)
-        horizontal_edge_points(geometry, beams, work, record, points, kinds)
+        horizontal_edge_points(geometry, beams, work, record, points, kinds, self._tracing.guard)
 
 
-def _hits_of_tree(tracing: Tracing, tree: Tree, numbers: Ints, max_hits: int) -> tuple[Hits, int]:
-    return hit_points(tracing.scene.view, tree, tracing.targets, numbers, max_hits)
+def _hits_of_tree(
+    tracing: Tracing, tree: Tree, numbers: Ints, max_hits: int, guard: Guard
+) -> tuple[Hits, int]:
+    return hit_points(tracing.scene.view, tree, tracing.targets, numbers, max_hits, guard)
+
+
+def cells_bytes(scene: Scene, n_cells: int, config: TraceConfig, threads: int) -> int:
+    """Memory that the cells of a map take as receivers, with all sums over their paths [bytes]."""
+    edges = len(scene.vertical_edges) + 2 * len(scene.horizontal_edges)
+    in_work = sums_in_work(1 + config.max_diffractions * edges, threads)
+    return n_cells * RECEIVER_BYTES + in_work * sums_bytes(n_cells, config.max_reflections)
 
 
 def path_classes(tracing: Tracing) -> list[PathClass]:

@@ -1,6 +1,6 @@
 """The beams from one transmitter to receivers in a scene, before any field is computed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,8 +17,12 @@ from raytrace.kernels.building import (
     image_bounces,
     image_heights,
 )
+from raytrace.kernels.guard import Guard, no_guard
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.scene import Scene
+from raytrace.solver.limits import check_whole, nbytes, taking
+
+BEAMS = "the beams"
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +45,8 @@ class Tracing:
         Corners of the plan view within these beams.
     partial_walls, intervals
         (n, 2), (n, 2) partial walls that these beams meet, and which part of them.
+    guard
+        What may end the kernels, with the memory that is left.
     """
 
     scene: Scene
@@ -52,10 +58,20 @@ class Tracing:
     corners: Hits
     partial_walls: Int32s
     intervals: Floats
+    guard: Guard
+
+    def shared_by(self, threads: int) -> "Tracing":
+        """Return the same, with the memory that is left for each of some threads."""
+        each = self.guard._replace(max_bytes=self.guard.max_bytes // threads)
+        return replace(self, guard=each)
 
 
 def prepare(
-    scene: Scene, position: tuple[float, float, float], receivers: Floats, config: TraceConfig
+    scene: Scene,
+    position: tuple[float, float, float],
+    receivers: Floats,
+    config: TraceConfig,
+    guard: Guard | None = None,
 ) -> Tracing:
     """Grow the beams from a transmitter.
 
@@ -67,20 +83,24 @@ def prepare(
         Of the transmitter [m].
     receivers
         (n, 3) positions [m]; no path reaches those outside the building.
+    guard
+        What may end the kernels; nothing by default.
 
     Raises
     ------
     SceneError
         Where the transmitter is not inside the building.
+    TraceStoppedError, MemoryLimitError
+        Where the guard has ended a kernel.
     """
-    view = scene.view
+    view, guard = scene.view, guard or no_guard()
     x, y, z = (float(coordinate) for coordinate in position)
     root = _cells_of_transmitter(scene, (x, y, z))
     geometry = _geometry(scene, (x, y, z), receivers, config)
     band = [z, *np.unique(receivers[:, 2]), *(e.z for e in scene.horizontal_edges)]
     bounces = bounces_needed(view, min(band), max(band), config.max_transmissions > 0)
     limits = (config.max_reflections, config.max_transmissions)
-    tree = grow_tree(view, bounces, (x, y), root, limits)
+    tree, corners, partial_walls, intervals = _beams(scene, bounces, (x, y), root, limits, guard)
     inside = (receivers[:, 2] > 0.0) & (receivers[:, 2] < scene.height_m)
     return Tracing(
         scene,
@@ -89,9 +109,32 @@ def prepare(
         targets_in(view, geometry.receivers.xy, inside),
         bounces,
         tree,
-        hit_corners(view, tree),
-        *hit_partial_walls(view, tree),
+        corners,
+        partial_walls,
+        intervals,
+        taking(guard, nbytes((tree, corners, partial_walls, intervals)), BEAMS),
     )
+
+
+def _beams(
+    scene: Scene,
+    bounces: Ints,
+    root: tuple[float, float],
+    root_cells: Ints,
+    limits: tuple[int, int],
+    guard: Guard,
+) -> tuple[Tree, Hits, Int32s, Floats]:
+    """Grow the beams from a point; find the corners and partial walls within them."""
+    view = scene.view
+    tree, is_whole = grow_tree(view, bounces, root, root_cells, limits, guard)
+    check_whole(guard, is_whole, BEAMS)
+    guard = taking(guard, nbytes(tree), BEAMS)
+    corners, is_whole = hit_corners(view, tree, guard)
+    check_whole(guard, is_whole, BEAMS)
+    guard = taking(guard, nbytes(corners), BEAMS)
+    partial_walls, intervals, is_whole = hit_partial_walls(view, tree, guard)
+    check_whole(guard, is_whole, BEAMS)
+    return tree, corners, partial_walls, intervals
 
 
 def _geometry(

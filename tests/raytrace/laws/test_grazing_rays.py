@@ -13,6 +13,7 @@ from raytrace.solver.accumulate import sum_paths
 from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.setup import prepare
+from raytrace.solver.workers import Workers
 
 Floats = NDArray[np.float64]
 LIMITS = TraceConfig(2, 1)
@@ -48,7 +49,9 @@ class Case(NamedTuple):
         antenna = HalfWaveDipole(axis=tuple(solid @ self.axis))
         source = Transmitter((x, y, z), antenna=antenna)
         classes = path_classes(prepare(scene, source.position, receivers, self.limits))
-        return sum_paths(classes, evaluation_of(scene.slabs, source, self.limits, antenna))
+        with Workers() as workers:
+            evaluation = evaluation_of(scene.slabs, source, self.limits, antenna)
+            return sum_paths(workers, classes, evaluation)
 
 
 def lattice(plan: floorplans.FloorPlan, step: float, z: float) -> Floats:

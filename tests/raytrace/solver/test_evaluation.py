@@ -15,6 +15,7 @@ from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
 from raytrace.solver.setup import prepare
+from raytrace.solver.workers import Workers
 
 ROOM = ROOMS["glass window and door"]
 CONFIG = TraceConfig(3, 1, max_transmissions=1, min_power_dbm=-95.0)
@@ -52,7 +53,9 @@ def grown() -> list[PathClass]:
 def evaluated(classes: list[PathClass], variant: str) -> tuple[Sums, list[Paths]]:
     scene, transmitter = VARIANTS[variant]
     evaluation = evaluation_of(scene.slabs, transmitter, CONFIG)
-    return sum_paths(classes, evaluation), [c.list_paths(evaluation) for c in classes]
+    with Workers() as workers:
+        sums = sum_paths(workers, classes, evaluation)
+    return sums, [c.list_paths(evaluation) for c in classes]
 
 
 def traced(variant: str) -> tuple[Sums, list[Paths]]:
