@@ -204,7 +204,7 @@ def hit_point_arrays(
         i = int(beams[done])
         cell, is_root = tree.link[i, CELL], tree.link[i, EDGE] < 0
         first, last = targets.cell_points[cell], targets.cell_points[cell + 1]
-        needed = n + last - first
+        needed = n + int(last - first)
         if not may_hold(guard, needed, len(pair), HIT_BYTES):
             break
         while needed > len(pair):
@@ -251,7 +251,7 @@ def hit_corner_arrays(view: PlanView, tree: Tree, guard: Guard) -> tuple[Int32s,
     while done < len(tree.link) and not is_stopped(guard):
         i, cell, entry = done, tree.link[done, CELL], tree.link[done, EDGE]
         first, last = view.cell_edges[cell], view.cell_edges[cell + 1]
-        needed = n + last - first
+        needed = n + int(last - first)
         if not may_hold(guard, needed, len(pair), HIT_BYTES):
             break
         while needed > len(pair):
@@ -288,7 +288,7 @@ def hit_partial_walls(view: PlanView, tree: Tree, guard: Guard) -> tuple[Int32s,
     while done < len(tree.link) and not is_stopped(guard):
         i, cell = done, tree.link[done, CELL]
         first, last = view.cell_edges[cell], view.cell_edges[cell + 1]
-        needed = n + last - first
+        needed = n + int(last - first)
         if not may_hold(guard, needed, len(hits), PARTIAL_HIT_BYTES):
             break
         while needed > len(hits):

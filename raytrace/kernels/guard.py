@@ -45,7 +45,7 @@ def _loaded_atomically(_typing_context: Any, flags: types.Array) -> Any:
 @jit(inline=True)
 def is_stopped(guard: Guard) -> bool:
     """Whether a kernel must end."""
-    return _loaded_atomically(guard.stop) != 0
+    return _loaded_atomically(guard.stop) != 0  # pyright: ignore[reportCallIssue]
 
 
 @jit(inner=True)

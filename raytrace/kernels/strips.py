@@ -293,8 +293,10 @@ def grow_strips(
     strips, is_whole
         The beams, and whether they are all; otherwise there are none.
     """
-    *arrays, is_whole = grow_strip_arrays(view, bounces, root, root_cell, limits, guard)
-    return StripTree(*arrays), is_whole
+    link, frame, first, rays, is_whole = grow_strip_arrays(
+        view, bounces, root, root_cell, limits, guard
+    )
+    return StripTree(link, frame, first, rays), is_whole
 
 
 @jit()
@@ -379,7 +381,7 @@ def hit_strip_arrays(
         i = int(beams[done])
         cell, rays = tree.link[i, CELL], tree.rays[tree.first[i] : tree.first[i + 1]]
         begin, last = targets.cell_points[cell], targets.cell_points[cell + 1]
-        needed = n + last - begin
+        needed = n + int(last - begin)
         if not may_hold(guard, needed, len(pair), HIT_BYTES + SEEN_BYTES):
             break
         while needed > len(pair):
