@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import ThreadPoolExecutor, as_completed, wait
 from dataclasses import dataclass
 from threading import Event
 
@@ -31,6 +31,7 @@ from rssnav.world import GridWorld
 Checkpoint = Callable[[TrainingResult], None]
 
 _CHUNK_EPISODES = 64  # between two checks for an interrupt
+_LONGEST_END_S = 0.3  # longest wait for threads after an interrupt
 _CHECKPOINT_S = 3.0
 _CHECKPOINT_FRACTION = 0.05  # of the time, at most
 
@@ -309,18 +310,19 @@ def _on_threads(
 ) -> tuple[list[_Realisation], bool]:
     """Train realisations on a pool; returns the finished ones, and whether Ctrl-C stopped it."""
     interrupted = False
-    with ThreadPoolExecutor(threads) as pool:
-        futures = [pool.submit(trainer, run_id) for run_id in run_ids]
-        try:
-            for future in as_completed(futures):
-                if (finished := future.result()) is not None:
-                    monitor(finished)
-        except KeyboardInterrupt:
-            interrupted = True
-        finally:
-            trainer.stop.set()
-            pool.shutdown(cancel_futures=True)
-    results = [future.result() for future in futures if not future.cancelled()]
+    pool = ThreadPoolExecutor(threads)
+    futures = [pool.submit(trainer, run_id) for run_id in run_ids]
+    try:
+        for future in as_completed(futures):
+            if (finished := future.result()) is not None:
+                monitor(finished)
+    except KeyboardInterrupt:
+        interrupted = True
+    finally:
+        trainer.stop.set()
+        pool.shutdown(wait=False, cancel_futures=True)
+        wait(futures, _LONGEST_END_S)
+    results = [f.result() for f in futures if f.done() and not f.cancelled()]
     return [result for result in results if result is not None], interrupted
 
 

@@ -1,7 +1,8 @@
 """The command line ``rssnav``.
 
 Each command has a module, listed in `rssnav.cli.commands`. Results go to standard output, progress
-and notes to standard error; exit codes are 0 success, 1 failure, 2 wrong usage, 130 interrupted.
+and notes to standard error; exit codes are 0 success, 1 failure, 2 wrong usage, 130 interrupted by
+Ctrl-C, 143 by SIGTERM.
 """
 
 from importlib.metadata import version

@@ -16,13 +16,13 @@ from rssnav.cli.boundaries import check_before_work
 from rssnav.cli.failures import (
     EXIT_FAILURE,
     INTERRUPTED,
-    INTERRUPTED_TEXT,
     is_anticipated,
     print_error,
     warnings_as_lines,
     with_remedy,
 )
 from rssnav.cli.streams import tolerant_streams
+from rssnav.interrupts import INTERRUPTED_TEXT, INTERRUPTS
 from rssnav.messages import printable
 
 
@@ -136,6 +136,7 @@ class Commands(TyperGroup):
             with _printable_usage(), warnings_as_lines():
                 return super().invoke(ctx)
         except KeyboardInterrupt as interrupt:
+            INTERRUPTS.reported()
             print_error(str(interrupt) or INTERRUPTED_TEXT)
             raise typer.Exit(INTERRUPTED) from interrupt
         except Exception as error:

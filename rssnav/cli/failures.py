@@ -11,10 +11,6 @@ from rssnav.messages import describe, printable
 EXIT_FAILURE = 1
 INTERRUPTED = 130
 
-INTERRUPTED_TEXT = (
-    "interrupted; files are written whole or not at all, so nothing is left half-done"
-)
-
 REMEDIES = {
     "make_map": "`rssnav map PLAN -o {path}`",
     "replace_file": "--force",
@@ -24,6 +20,7 @@ REMEDIES = {
     "height_m": "--height M",
     "layers": "--layer NAME=KIND",
     "install_ifc": 'pip install "rssnav[ifc]"',
+    "less_memory": "--reflections, --transmissions, --cell-size, --threads or --max-memory",
 }
 """What a user of the command does, by the key `remedy` that the libraries give an error."""
 
@@ -31,10 +28,11 @@ REMEDIES = {
 def is_anticipated(error: Exception) -> bool:
     """Return whether the user can correct an error, so that it needs no traceback."""
     from floorplans import PlanError
-    from raytrace import MapFileError, SceneError
+    from raytrace import MapFileError, MemoryLimitError, SceneError
     from rssnav import ResultFileError, WorldError
 
-    anticipated = (PlanError, SceneError, MapFileError, WorldError, ResultFileError, OSError)
+    unusable = (PlanError, SceneError, MapFileError, WorldError, ResultFileError)
+    anticipated = (*unusable, MemoryLimitError, OSError)
     return isinstance(error, anticipated) and not isinstance(error, BrokenPipeError)
 
 

@@ -50,6 +50,7 @@ from rssnav.cli.train_options import (
     UntilConverged,
 )
 from rssnav.discrete_states import StateRule
+from rssnav.interrupts import INTERRUPTS
 from rssnav.keeping import lenient, save_or_rescue
 from rssnav.kernel_cache import learning_cache
 from rssnav.maps import Progress, require_map_for
@@ -202,7 +203,9 @@ class _Job:
             with one_progress(stage, compiles=not learning_cache().n_compiled) as progress:
                 result = self._train(earlier, threads, progress)
         except TrainingInterrupted as interrupt:
-            raise KeyboardInterrupt(self._keep(interrupt.result)) from interrupt
+            with INTERRUPTS.keeping():
+                kept = self._keep(interrupt.result)
+            raise KeyboardInterrupt(kept) from interrupt
         if self._output is not None and result is not earlier:
             save_or_rescue(result.save, self._output)
         return result

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rssnav.agents import Agent
 from rssnav.experiments.progress import Notice
+from rssnav.interrupts import INTERRUPTS
 from rssnav.keeping import lenient
 from rssnav.learning_parameters import QLearning
 from rssnav.result_file import ResultFileError
@@ -85,7 +86,8 @@ class TrainingStore:
             )
         except TrainingInterrupted as interrupt:
             if interrupt.result is not None:
-                interrupt.result.save(path)
+                with INTERRUPTS.keeping():
+                    interrupt.result.save(path)
             raise
         result.save(path)
         return result, True
