@@ -1,5 +1,6 @@
 """The receiver grid of a map."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,9 @@ MAX_CELLS = 1 << 27
 """Most cells of a grid: as many as a file holds."""
 
 _SAME_PLACE_M = 1e-9
+
+MAX_CELLS = 10**8
+"""Most cells of a grid; the sums over paths of so many take some 10 GB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +79,12 @@ class Grid:
         half = 0.5 * cell_size_m
         n_x = max(1, int(np.floor((x_max - x_min + half) / cell_size_m - 1e-9)))
         n_y = max(1, int(np.floor((y_max - y_min + half) / cell_size_m - 1e-9)))
+        if n_x * n_y > MAX_CELLS:
+            least_m = math.sqrt((x_max - x_min) * (y_max - y_min) / MAX_CELLS)
+            raise ValueError(
+                f"cell_size_m = {cell_size_m:g} makes {n_x} x {n_y} cells: expected at most "
+                f"{MAX_CELLS}, so cells of {least_m:.2g} m or more"
+            )
         return cls(
             x_min + half + cell_size_m * np.arange(n_x, dtype=np.float64),
             y_min + half + cell_size_m * np.arange(n_y, dtype=np.float64),

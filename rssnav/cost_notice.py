@@ -2,6 +2,8 @@
 
 from raytrace import CostEstimate, Grid, Scene, TraceConfig, Transmitter, estimate_cost
 
+UNITS_S = {"years": 3.156e7, "days": 86400.0, "hours": 3600.0, "minutes": 60.0}
+
 LONG_S = 60.0
 """A map that takes longer is announced [s]."""
 
@@ -39,21 +41,24 @@ def announcement(
 def sentence(cost: CostEstimate, grid: Grid) -> str:
     """Return an estimate in words."""
     cells = grid.x.size * grid.y.size
+    roughly = "very roughly" if cost.is_extrapolated else "about"
     return (
-        f"this map will take about {_duration(cost.seconds)}: some {_count(cost.paths)} paths over "
-        f"{_count(cells)} cells; larger cells, fewer reflections, --min-power or "
+        f"this map will take {roughly} {_duration(cost.seconds)}: some {_count(cost.paths)} paths "
+        f"over {_count(cells)} cells; larger cells, fewer reflections, --min-power or "
         "--max-paths make it shorter"
     )
 
 
 def _duration(seconds: float) -> str:
-    for unit, length in (("hours", 3600.0), ("minutes", 60.0)):
+    for unit, length in UNITS_S.items():
         if seconds >= 2.0 * length:
             return f"{seconds / length:.0f} {unit}"
     return f"{seconds:.0f} seconds"
 
 
 def _count(number: int) -> str:
+    if number >= 10**12:
+        return f"{number:.1e}"
     if number >= 10_000_000:
         return f"{number / 1e6:.0f} million"
     return f"{number:,}".replace(",", " ")

@@ -82,6 +82,7 @@ class MapRequest:
         threads: int | None = None,
         progress: Progress | None = None,
         notice: Notice | None = None,
+        max_memory_bytes: int | None = None,
     ) -> RadioMap:
         """Trace the map and store its plan in it; give notice first if it will take long."""
         scene = scene or scene_of(self.plan, self.edition)
@@ -89,7 +90,9 @@ class MapRequest:
         try:
             if notice is not None and (words := announcement(*made_with, threads)) is not None:
                 notice(words)
-            radio_map = compute_radio_map(*made_with, threads=threads, progress=progress)
+            radio_map = compute_radio_map(
+                *made_with, threads=threads, progress=progress, max_memory_bytes=max_memory_bytes
+            )
         except SceneError as error:
             raise SceneError(f"plan {self.plan.name!r}: {error}") from error
         return radio_map.with_plan(floorplans.dumps(self.plan), self.plan.sha256)
@@ -110,6 +113,7 @@ def make_map(
     progress: Progress | None = None,
     notice: Notice | None = None,
     force: bool = False,
+    max_memory_bytes: int | None = None,
 ) -> RadioMap:
     """Return a plan's radio map: the one in a file if it is current, otherwise a new one.
 
@@ -142,11 +146,15 @@ def make_map(
         tracing will take longer than a minute.
     force : bool
         Compute the map again, and replace whatever is at `path`.
+    max_memory_bytes : int, optional
+        Most memory that tracing may take; by default half of what is free.
 
     Raises
     ------
     ValueError
         For a number out of range, or the scene of another building.
+    MemoryLimitError
+        Where tracing needs more memory than it may take.
     SceneError
         Where the tracer cannot work with the plan.
     MapFileError
@@ -172,7 +180,9 @@ def make_map(
         config or TraceConfig(),
         edition,
     )
-    compute = partial(request.compute, scene and scene.scene, threads, progress, notice)
+    compute = partial(
+        request.compute, scene and scene.scene, threads, progress, notice, max_memory_bytes
+    )
     if path is None:
         return compute()
     path = Path(path)

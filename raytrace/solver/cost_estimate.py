@@ -5,8 +5,12 @@ edges most beams meet, which hold most paths, and every k-th of the others; of l
 beams and every k-th run of the others; receivers in tiles, as a beam that holds one holds its
 neighbours too, which share a block then. The choice depends neither on chance nor on the clock, so
 the estimated number of paths does not either.
+
+Where even that takes too much time or memory, lower orders are traced, as many as there is time
+for, and the estimate is extrapolated from the last two.
 """
 
+import math
 import time
 from dataclasses import dataclass, replace
 
@@ -14,15 +18,18 @@ import numpy as np
 
 from raytrace.arrays import Floats, Ints
 from raytrace.config import TraceConfig
+from raytrace.errors import MemoryLimitError, TraceStoppedError
 from raytrace.grid import Grid
-from raytrace.kernels.sums import Sums, add_sums, new_sums
+from raytrace.kernels.guard import Guard
+from raytrace.kernels.sums import add_sums, new_sums, sums_bytes
 from raytrace.radio.transmitter import Transmitter
 from raytrace.scene import Scene
-from raytrace.solver.accumulate import AHEAD
+from raytrace.solver.accumulate import sums_in_work
 from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
 from raytrace.solver.setup import prepare
+from raytrace.solver.workers import Workers
 from raytrace.threads import n_threads
 
 LARGEST = 16
@@ -49,6 +56,15 @@ GOLDEN = 0.618
 REACHED_RECEIVERS = 64
 """More tiles are taken until this many of their receivers have a path."""
 
+LONGEST_S = 0.8
+"""Processor time for the full order, and again for lower ones [s]."""
+
+MAX_BYTES = 200 << 20
+"""Memory for the beams of a class, while costs are estimated [bytes]."""
+
+LEAST_POWER = 3.0
+"""Numbers of paths are taken to grow at least with this power of the order."""
+
 BYTES_A_BEAM = 320
 """Memory of a beam while its tree grows, about."""
 
@@ -65,11 +81,14 @@ class CostEstimate:
         Time to trace it on this machine, with compiled kernels [s].
     memory_bytes
         Memory for sums and for beams, beyond what the process uses already.
+    is_extrapolated
+        Whether the numbers follow from those of fewer reflections; they are rough then.
     """
 
     paths: int
     seconds: float
     memory_bytes: int
+    is_extrapolated: bool = False
 
 
 @dataclass(frozen=True)
@@ -78,22 +97,25 @@ class _Sample:
 
     Attributes
     ----------
-    n_classes, n_reached
-        Number of all path classes, and of receivers with a path.
+    n_classes, n_receivers, n_reached
+        Number of all path classes, of receivers, and of those with a path.
     paths
         Number of paths.
-    growing_s, summing_s
-        Time for the beams, and for finding receivers in them and summing the paths [s].
+    preparing_s, growing_s, summing_s
+        Time for the receivers, for the beams, and for finding receivers in them and summing the
+        paths [s].
     most_beams
         Beams of the largest tree.
     """
 
     n_classes: int
+    n_receivers: int
     n_reached: int
     paths: float
+    preparing_s: float
     growing_s: float
     summing_s: float
-    most_beams: int
+    most_beams: float
 
 
 def estimate_cost(
@@ -120,60 +142,136 @@ def estimate_cost(
     """
     config, threads = config or TraceConfig(), n_threads(threads)
     n_receivers = grid.x.size * grid.y.size
-    every = max(1, n_receivers // RECEIVERS)
-    # once for the compiler, whose time does not count
-    _sampled(scene, transmitter, grid.points()[:1], replace(config, max_reflections=1))
-    while True:
-        points = _in_tiles(grid, every)
-        sample = _sampled(scene, transmitter, points, config)
-        if every == 1 or sample.n_reached >= REACHED_RECEIVERS:
-            break
-        every //= 2
-    everywhere = n_receivers / len(points)
-    started = time.perf_counter()
-    prepare(scene, transmitter.position, grid.points(), replace(config, max_reflections=0))
-    preparing = time.perf_counter() - started
+    sampler = _Sampler(scene, transmitter, grid)
+    sampler.compile(config)
+    sample = sampler.sample(config, LONGEST_S)
+    is_extrapolated = sample is None
+    if sample is None:
+        sample = _extrapolated(sampler.lower_orders(config), config.max_reflections)
+    everywhere = n_receivers / sample.n_receivers
     working = (sample.growing_s + everywhere * sample.summing_s) / threads
-    a_sum = new_sums(n_receivers, config.max_reflections)
-    in_work = min(sample.n_classes, AHEAD * threads + 1) + 1
+    adding = sample.n_classes * everywhere * _seconds_to_add(sample.n_receivers, config)
+    in_work = sums_in_work(sample.n_classes, threads)
+    sums = in_work * sums_bytes(n_receivers, config.max_reflections)
     return CostEstimate(
         round(sample.paths * everywhere),
-        preparing + working + sample.n_classes * _seconds_to_add(a_sum),
-        in_work * sum(part.nbytes for part in a_sum) + threads * BYTES_A_BEAM * sample.most_beams,
+        everywhere * sample.preparing_s + working + adding,
+        sums + round(threads * BYTES_A_BEAM * sample.most_beams),
+        is_extrapolated,
     )
+
+
+@dataclass(frozen=True)
+class _Sampler:
+    """Traces some of the path classes of a map for some of its cells."""
+
+    scene: Scene
+    transmitter: Transmitter
+    grid: Grid
+
+    def compile(self, config: TraceConfig) -> None:
+        """Compile the kernels, whose time does not count."""
+        small = replace(
+            config, max_reflections=1, max_transmissions=min(config.max_transmissions, 1)
+        )
+        point = np.array([[self.grid.x[0], self.grid.y[0], self.grid.height_m]])
+        with Workers(1) as workers:
+            workers.run(self._traced, point, small, workers.guard(MAX_BYTES))
+
+    def lower_orders(self, config: TraceConfig) -> list[_Sample]:
+        """Return samples of 0, 1, ... reflections, as many as there is time for; at least one."""
+        samples: list[_Sample] = []
+        ends_s = time.process_time() + LONGEST_S
+        for order in range(config.max_reflections):
+            left_s = ends_s - time.process_time()
+            found = self.sample(replace(config, max_reflections=order), left_s)
+            if found is None:
+                break
+            samples.append(found)
+        if samples:
+            return samples
+        least = TraceConfig(0, 0, min_power_dbm=config.min_power_dbm)
+        found = self.sample(least, math.inf)
+        assert found is not None
+        return [found]
+
+    def sample(self, config: TraceConfig, longest_s: float) -> _Sample | None:
+        """Return a sample; None where it takes too much time or memory."""
+        ends_s = time.process_time() + longest_s
+        every = max(1, self.grid.x.size * self.grid.y.size // RECEIVERS)
+        with Workers(1, lambda: time.process_time() > ends_s) as workers:
+            guard = workers.guard(MAX_BYTES)
+            try:
+                while True:
+                    points = _in_tiles(self.grid, every)
+                    found = workers.run(self._traced, points, config, guard)
+                    enough = found.n_reached >= REACHED_RECEIVERS or len(points) > 8 * RECEIVERS
+                    if every == 1 or enough:
+                        return found
+                    every //= 2
+            except (TraceStoppedError, MemoryLimitError):
+                return None
+
+    def _traced(self, points: Floats, config: TraceConfig, guard: Guard) -> _Sample:
+        started = time.perf_counter()
+        none = replace(config, max_reflections=0, max_transmissions=0)
+        prepare(self.scene, self.transmitter.position, points, none, guard)
+        preparing = time.perf_counter() - started
+        started = time.perf_counter()
+        tracing = prepare(self.scene, self.transmitter.position, points, config, guard)
+        evaluation = evaluation_of(self.scene.slabs, self.transmitter, config)
+        classes = path_classes(tracing)
+        n_classes, chosen = len(classes), _some(classes)
+        del classes  # the beams of each are dropped with it
+        growing, reached = time.perf_counter() - started, np.zeros(len(points), np.bool_)
+        summing = paths = 0.0
+        most_beams = len(tracing.tree.link)
+        while chosen:
+            path_class, weight = chosen.pop(0)
+            started = time.perf_counter()
+            n_beams = path_class.grow()
+            growing += weight * (time.perf_counter() - started)
+            most_beams = max(most_beams, n_beams)
+            for beams, each in _some_beams(n_beams):
+                started = time.perf_counter()
+                sums = path_class.sum_paths(evaluation, beams)
+                summing += weight * each * (time.perf_counter() - started)
+                paths += weight * each * float(sums.n_paths.sum())
+                reached |= sums.power > 0.0
+        n_reached = int(np.count_nonzero(reached))
+        return _Sample(
+            n_classes, len(points), n_reached, paths, preparing, growing, summing, most_beams
+        )
+
+
+def _extrapolated(samples: list[_Sample], max_reflections: int) -> _Sample:
+    """Let numbers grow with the power of the order by which the last two samples differ."""
+    last, n = samples[-1], len(samples)
+
+    def grown(name: str) -> float:
+        power, now = LEAST_POWER, float(getattr(last, name))
+        then = float(getattr(samples[-2], name)) if n > 1 else 0.0
+        if then > 0.0 and now > 0.0:
+            power = max(power, math.log(now / then) / math.log(n / (n - 1)))
+        return now * ((max_reflections + 1) / n) ** power
+
+    names = ("paths", "growing_s", "summing_s", "most_beams")
+    return replace(last, **{name: grown(name) for name in names})
 
 
 def _in_tiles(grid: Grid, every: int) -> Floats:
     """Return the cells (n, 3) [m] of one in so many tiles, some in each row and column of tiles."""
-    x, y = np.arange(grid.x.size) // TILE, np.arange(grid.y.size) // TILE
+    n_x, n_y = grid.x.size, grid.y.size
+    x, y = np.arange(math.ceil(n_x / TILE)), np.arange(math.ceil(n_y / TILE))
     turn = x[None, :] + max(1, round(GOLDEN * every)) * y[:, None]
-    return grid.points()[(turn % every == 0).ravel()]
-
-
-def _sampled(
-    scene: Scene, transmitter: Transmitter, points: Floats, config: TraceConfig
-) -> _Sample:
-    """Trace some of the path classes for some receivers."""
-    started = time.perf_counter()
-    tracing = prepare(scene, transmitter.position, points, config)
-    evaluation = evaluation_of(scene.slabs, transmitter, config)
-    classes = path_classes(tracing)
-    growing, reached = time.perf_counter() - started, np.zeros(len(points), np.bool_)
-    summing = paths = 0.0
-    most_beams = len(tracing.tree.link)
-    for path_class, weight in _some(classes):
-        started = time.perf_counter()
-        n_beams = path_class.grow()
-        growing += weight * (time.perf_counter() - started)
-        most_beams = max(most_beams, n_beams)
-        for beams, each in _some_beams(n_beams):
-            started = time.perf_counter()
-            sums = path_class.sum_paths(evaluation, beams)
-            summing += weight * each * (time.perf_counter() - started)
-            paths += weight * each * float(sums.n_paths.sum())
-            reached |= sums.power > 0.0
-    n_reached = int(np.count_nonzero(reached))
-    return _Sample(len(classes), n_reached, paths, growing, summing, most_beams)
+    tile_y, tile_x = np.nonzero(turn % every == 0)
+    within = np.arange(TILE)
+    i_y = (tile_y[:, None, None] * TILE + within[:, None]) + 0 * within
+    i_x = (tile_x[:, None, None] * TILE + within) + 0 * within[:, None]
+    inside = (i_y < n_y) & (i_x < n_x)
+    number = np.sort(i_y[inside] * n_x + i_x[inside])
+    i_y, i_x = number // n_x, number % n_x
+    return np.column_stack([grid.x[i_x], grid.y[i_y], np.full(len(number), grid.height_m)])
 
 
 def _some(classes: list[PathClass]) -> list[tuple[PathClass, int]]:
@@ -191,8 +289,9 @@ def _some_beams(n: int) -> list[tuple[Ints, float]]:
     return [(first, 1.0), (some, len(others) / max(len(some), 1))]
 
 
-def _seconds_to_add(sums: Sums) -> float:
+def _seconds_to_add(n_receivers: int, config: TraceConfig) -> float:
     """Return the time to add the sums of a path class to those of the others [s]."""
+    total, part = (new_sums(n_receivers, config.max_reflections) for _ in range(2))
     started = time.perf_counter()
-    add_sums(sums, new_sums(len(sums.power), sums.n_paths.shape[1] - 1))
+    add_sums(total, part)
     return time.perf_counter() - started

@@ -89,6 +89,17 @@ MaxPaths = Annotated[
         show_default="no limit",
     ),
 ]
+MaxMemory = Annotated[
+    float | None,
+    typer.Option(
+        "--max-memory",
+        metavar="GB",
+        min=0.001,
+        max=1e6,
+        help="Memory that a trace may take; it ends with a message before it takes more.",
+        show_default="half of what is free",
+    ),
+]
 Frequency = Annotated[
     float,
     typer.Option(
@@ -170,6 +181,11 @@ PICTURE_SUFFIXES = (".png", ".svg", ".pdf")
 def examples(*commands: str) -> str:
     """Text below a command's help: command lines that work as they are."""
     return "\n\n".join(["Examples:", *(f"  {command}" for command in commands)])
+
+
+def in_bytes(max_memory: float | None) -> int | None:
+    """Convert --max-memory from gigabytes."""
+    return None if max_memory is None else round(max_memory * 1e9)
 
 
 def check_suffix(path: Path | None, known: tuple[str, ...], option: str) -> None:

@@ -19,12 +19,14 @@ from rssnav.cli.options import (
     Diffractions,
     Edition,
     Json,
+    MaxMemory,
     Plan,
     Reflections,
     Style,
     Transmissions,
     check_suffix,
     examples,
+    in_bytes,
 )
 from rssnav.kernel_cache import tracer_cache
 from rssnav.maps import FREQUENCY_HZ, HEIGHT_M, POWER_DBM
@@ -97,6 +99,7 @@ def show_paths(
     reflections: Reflections = TraceConfig.max_reflections,
     diffractions: Diffractions = TraceConfig.max_diffractions,
     transmissions: Transmissions = TraceConfig.max_transmissions,
+    max_memory: MaxMemory = None,
     edition: Edition = None,
     style: Style = None,
     as_json: Json = False,
@@ -112,7 +115,8 @@ def show_paths(
     check_suffix(picture, DRAWING_SUFFIXES, "--picture")
     loaded = floorplans.load(plan)
     _check_inside(loaded, plan, to)
-    paths = _trace(loaded, plan, to, TraceConfig(reflections, diffractions, transmissions), edition)
+    config = TraceConfig(reflections, diffractions, transmissions)
+    paths = _trace(loaded, plan, to, config, edition, in_bytes(max_memory))
     chosen = _chosen(paths, only, top)
     if picture is not None:
         _draw(loaded, chosen, only, picture, style)
@@ -127,14 +131,20 @@ def show_paths(
 
 
 def _trace(
-    plan: FloorPlan, name: str, to: Position, config: TraceConfig, edition: str | None
+    plan: FloorPlan,
+    name: str,
+    to: Position,
+    config: TraceConfig,
+    edition: str | None,
+    max_memory_bytes: int | None,
 ) -> Paths:
     """All paths to a receiver, strongest first."""
     if not tracer_cache().n_compiled:
         note(COMPILING)
     source = Transmitter(plan.source, POWER_DBM, FREQUENCY_HZ)
     try:
-        return trace_paths(scene_of(plan, edition), source, np.array([to]), config)
+        scene, receivers = scene_of(plan, edition), np.array([to])
+        return trace_paths(scene, source, receivers, config, max_memory_bytes=max_memory_bytes)
     except SceneError as error:
         raise SceneError(f"{name}: {error}") from error
 

@@ -20,6 +20,7 @@ from rssnav.cli.options import (
     Frequency,
     Height,
     Json,
+    MaxMemory,
     MaxPaths,
     MinPower,
     Picture,
@@ -31,6 +32,7 @@ from rssnav.cli.options import (
     Transmissions,
     check_suffix,
     examples,
+    in_bytes,
 )
 from rssnav.kernel_cache import tracer_cache
 from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM, make_map
@@ -66,6 +68,7 @@ def map_plan(
     transmissions: Transmissions = TraceConfig.max_transmissions,
     min_power: MinPower = None,
     max_paths: MaxPaths = None,
+    max_memory: MaxMemory = None,
     edition: Edition = None,
     threads: Threads = None,
     force: Force = False,
@@ -100,6 +103,7 @@ def map_plan(
             power_dbm=power,
             edition=edition,
             threads=threads,
+            max_memory_bytes=in_bytes(max_memory),
             progress=lambda done, total: show(loaded.name, done, total),
             notice=note,
             force=force,
