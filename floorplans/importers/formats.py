@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
+from shapely.errors import GEOSException
+
 from floorplans.errors import PlanError
 from floorplans.importers.assembly.assemble import assemble
 from floorplans.importers.draft import Draft, ImportOptions
@@ -129,6 +131,8 @@ def import_plan(path: str | Path, options: ImportOptions | None = None) -> Impor
         return assemble(drafted, options, path.name)
     except PlanError as error:
         raise error.located(str(path)) from error
+    except GEOSException as error:
+        raise PlanError(f"its geometry makes no plan: {error}", origin=str(path)) from error
 
 
 def read_draft(path: Path, options: ImportOptions) -> Draft | FloorPlan:

@@ -60,9 +60,9 @@ def tidy_point(x: float, y: float) -> Point:
 
 
 def direction(wall: Wall) -> Point:
-    """Unit vector from a wall's start to its end."""
+    """Unit vector from a wall's start to its end; (0, 0) for a wall of no length."""
     (x0, y0), (x1, y1) = wall.start, wall.end
-    length = hypot(x1 - x0, y1 - y0)
+    length = hypot(x1 - x0, y1 - y0) or 1.0
     return ((x1 - x0) / length, (y1 - y0) / length)
 
 

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString
 
+from floorplans.repair.geometry import direction
 from floorplans.repair.walls import repair_walls, split_at_junctions
 from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 
@@ -173,3 +174,8 @@ def test_two_thousand_walls_are_repaired():
     assert len(walls) > 2000
     repaired = repair_walls(walls, 0.05).walls
     assert closed_area(repaired) == pytest.approx(33 * 5 * 29 * 4, rel=0.01)
+
+
+def test_a_wall_of_no_length_is_left_for_the_check() -> None:
+    wall = Wall((6.0, 0.0), (6.0, 0.0), "concrete", 0.2, 3.0)
+    assert direction(wall) == (0.0, 0.0)
