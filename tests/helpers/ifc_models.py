@@ -144,6 +144,21 @@ class Model:
         feature.add_feature(self.file, feature=hole, element=wall)
         return hole
 
+    def add_hole_across(
+        self, wall, middle: Point, width_m: float, sill_m: float, head_m: float
+    ) -> None:
+        """Cut a hole with a window, along x and 4 m deep, from a wall whose start is (0, 0)."""
+        hole = root.create_entity(self.file, ifc_class="IfcOpeningElement")
+        origin = self.file.createIfcCartesianPoint((0.0, 0.0))
+        profile = self.file.createIfcRectangleProfileDef(
+            "AREA", None, self.file.createIfcAxis2Placement2D(origin),
+            width_m * self.metre, 4.0 * self.metre,
+        )  # fmt: skip
+        self._give_body(hole, profile, head_m - sill_m)
+        self._place(hole, middle, (1.0, 0.0), sill_m)
+        feature.add_feature(self.file, feature=hole, element=wall)
+        self.add_filling(hole, "IfcWindow")
+
     def add_filling(self, hole, ifc_class: str):
         filling = root.create_entity(self.file, ifc_class=ifc_class)
         feature.add_filling(self.file, opening=hole, element=filling)

@@ -10,6 +10,7 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from floorplans.importers.assembly.chords import parts_on_chords
 from floorplans.importers.centrelines.double_doors import LEAF_GAP_M, same_kind
 from floorplans.importers.defaults import (
     DOOR_HEAD_M,
@@ -80,7 +81,7 @@ def close_gaps(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[W
 
 def _wall_in_gap(opening: RawOpening, near: Sequence[Wall]) -> Wall | None:
     """Wall in the gap that an opening spans; None where it lies in a wall or in no gap."""
-    if any(_is_in(opening, wall) for wall in near):
+    if any(_parts_on(opening, i, near, range(len(near))) for i in range(len(near))):
         return None
     in_line = [wall for wall in near if _is_in_line(opening, wall)]
     for wall in sorted(in_line, key=lambda wall: -wall.length_m):
@@ -134,12 +135,26 @@ def _is_in_line(opening: RawOpening, wall: Wall) -> bool:
     return beside and opening.is_along(direction(wall))
 
 
-def _is_in(opening: RawOpening, wall: Wall) -> bool:
-    """Whether an opening in line with a wall has its middle and half its width on it."""
+def _parts_on(
+    opening: RawOpening, host: int, walls: Sequence[Wall], near: Sequence[int]
+) -> list[tuple[int, RawOpening]]:
+    """Parts of an opening on a wall and the chords that continue it.
+
+    Empty unless the opening is in line with the wall, with its middle on it and half its width on
+    all of them.
+    """
+    s, _ = along_across(walls[host], opening.centre)
+    if not (0 <= s <= walls[host].length_m and _is_in_line(opening, walls[host])):
+        return []
+    parts = parts_on_chords(opening, host, walls, near)
+    covered_m = sum(_overlap_m(part, walls[i]) for i, part in parts)
+    return parts if covered_m > _MIN_FRACTION * opening.width_m else []
+
+
+def _overlap_m(opening: RawOpening, wall: Wall) -> float:
+    """Width of an opening that lies on a wall."""
     s, _ = along_across(wall, opening.centre)
-    overlap = min(s + opening.width_m / 2, wall.length_m) - max(s - opening.width_m / 2, 0.0)
-    on_wall = 0 <= s <= wall.length_m and overlap > _MIN_FRACTION * opening.width_m
-    return on_wall and _is_in_line(opening, wall)
+    return min(s + opening.width_m / 2, wall.length_m) - max(s - opening.width_m / 2, 0.0)
 
 
 def attach_openings(
@@ -165,15 +180,17 @@ def attach_openings(
     by_wall: list[list[Opening]] = [list(wall.openings) for wall in walls]
     edge = outline.boundary.buffer(_ON_EDGE_M)
     for raw in openings:
-        near = tree.query(Point(raw.centre), "dwithin", distance=thickest_m / 2 + _BESIDE_M)
-        hosts = [i for i in near.tolist() if _is_in(raw, walls[i])]
+        far_m = raw.width_m / 2 + thickest_m / 2 + _BESIDE_M
+        near = tree.query(Point(raw.centre), "dwithin", distance=far_m).tolist()
+        hosts = {i: parts for i in near if (parts := _parts_on(raw, i, walls, near))}
         if not hosts:
             changes.append(
                 Change("dropped", f"{raw.kind} that lies in no wall dropped", raw.centre)
             )
             continue
         i = min(hosts, key=lambda i: (abs(along_across(walls[i], raw.centre)[1]), i))
-        _add(by_wall[i], _opening(raw, walls[i], edge))
+        for k, part in hosts[i]:
+            _add(by_wall[k], _opening(part, walls[k], edge))
     attached = tuple(
         replace(wall, openings=tuple(sorted(own, key=lambda o: (o.offset_m, o.sill_m))))
         for wall, own in zip(walls, by_wall, strict=True)

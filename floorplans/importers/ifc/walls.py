@@ -174,7 +174,7 @@ def _openings(
 def _opening_of(
     shapes: Sequence[Body], pieces: Sequence[RawWall], fillings: Sequence[Entity], floor_m: float
 ) -> RawOpening:
-    """Measure an opening along the nearest piece of its wall."""
+    """Measure an opening along the nearest piece of its wall, or from end to end of its chords."""
     footprint = shapely.union_all([shape.footprint for shape in shapes])
     middle = footprint.centroid
     piece = min(pieces, key=lambda p: shapely.linestrings([p.start, p.end]).distance(middle))
@@ -183,15 +183,41 @@ def _opening_of(
     s = shapely.get_coordinates(footprint) @ u
     across = np.array([-u[1], u[0]])
     centre = u * (s.min() + s.max()) / 2 + across * (np.array(piece.start) @ across)
+    width_m = float(np.ptp(s))
+    if (bent := _bent_section(footprint, pieces)) is not None:
+        centre, u, width_m = bent
     sill_m = max(min(shape.z_min for shape in shapes) - floor_m, 0.0)
     head_m = max(shape.z_max for shape in shapes) - floor_m
     kind: OpeningKind = "passage" if sill_m < _PASSAGE_FOOT_M else "window"
     if fillings:
         kind = _kind(fillings[0])
     return RawOpening(
-        _point(centre), float(np.ptp(s)), kind, (float(u[0]), float(u[1])), float(sill_m),
+        _point(centre), width_m, kind, (float(u[0]), float(u[1])), float(sill_m),
         float(head_m),
     )  # fmt: skip
+
+
+def _bent_section(
+    footprint: BaseGeometry, pieces: Sequence[RawWall]
+) -> tuple[Floats, Floats, float] | None:
+    """Centre, direction and width of the section of a curved wall in a footprint.
+
+    None if it lies on one straight piece.
+    """
+    if len(pieces) < 2 or any(a.end != b.start for a, b in pairwise(pieces)):
+        return None
+    curve = LineString([piece.start for piece in pieces] + [pieces[-1].end])
+    section = shapely.get_coordinates(shapely.line_merge(curve.intersection(footprint)))
+    if len(section) < 3:
+        return None
+    along = section[-1] - section[0]
+    width_m = float(np.hypot(*along))
+    u = along / max(width_m, 1e-12)
+    s = section @ u
+    if not (np.diff(s) > 0).all():
+        return None
+    middle = (s[0] + s[-1]) / 2
+    return np.array([np.interp(middle, s, xy) for xy in section.T]), u, width_m
 
 
 def _kind(filling: Entity) -> OpeningKind:

@@ -351,7 +351,7 @@ def test_the_report_states_layers_assumptions_and_changes():
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("plan.dwg", b"AC1032", "cannot be imported; known: .dxf"),
+        ("plan.xyz", b"hello", "cannot be imported; known: .dxf"),
         ("plan", b"x", "no ending"),
         ("plan.dxf", b"", "the file is empty"),
         ("plan.dxf", b"ISO-10303-21;", "it looks like a IFC model"),
@@ -368,3 +368,27 @@ def test_files_of_another_kind_are_rejected(name: str, content: bytes, said: str
 def test_the_written_text_is_toml_whatever_the_file_is_called():
     text = assemble(HALL, ImportOptions(), "evil\nname = 1.dxf").toml()
     assert tomllib.loads(text)["name"] == "hall"
+
+
+CHORDS = [(0.0, 0.0), (2.0, 0.0), (3.8, 0.8), (5.1, 2.3), (5.1, 5.0), (0.0, 5.0)]
+
+
+@pytest.mark.parametrize(
+    ("centre", "direction", "widths"),
+    [
+        ((1.0, 0.0), (1.0, 0.0), [1.5]),  # within a chord
+        ((2.9, 0.4), (1.8, 0.8), [0.84, 1.97, 0.84]),  # over two bends
+        ((5.1, 4.5), (0.0, 1.0), [1.25]),  # to the corner and not around it
+    ],
+)
+def test_an_opening_covers_the_chords_of_a_curve_and_no_corner(
+    centre: tuple[float, float], direction: tuple[float, float], widths: list[float]
+):
+    ring = [*CHORDS, CHORDS[0]]
+    walls = tuple(RawWall(a, b, 0.2, "brick") for a, b in pairwise(ring))
+    width_m = 1.5 if len(widths) == 1 else 3.5
+    window = RawOpening(centre, width_m, "window", direction)
+    plan = assemble(Draft("bow", walls, (window,)), ImportOptions(), "bow.dxf").plan
+    found = [o for wall in plan.walls for o in wall.openings]
+    assert {o.material for o in found} == {"glass"}
+    assert sorted(o.width_m for o in found) == pytest.approx(sorted(widths), abs=0.02)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from contextlib import suppress
 from itertools import pairwise
-from math import hypot, pi
+from math import asin, hypot, pi
 from zipfile import ZIP_DEFLATED, ZipFile
 
 import pytest
@@ -280,6 +280,23 @@ def test_low_wall_keeps_its_height_and_hole_without_filling_is_a_passage(tmp_pat
     plan = import_plan(model.write(tmp_path / "hall.ifc")).plan
     assert sorted({round(wall.height_m, 6) for wall in plan.walls}) == [1.1, 2.7]
     assert openings_of(plan) == [("passage", 1.2, 0.0, 2.3)]
+
+
+def test_window_in_a_curved_wall_covers_several_chords(tmp_path) -> None:
+    model = Model()
+    model.add_storey("Ground floor")
+    model.add_wall((-4.0, 0.0), (4.0, 0.0), 0.2)
+    bow = model.add_curved_wall((0.0, 0.0), 4.0, 0.2, 2.7)
+    model.add_hole_across(bow, (0.0, 4.0), 5.0, 0.9, 2.1)
+    plan = import_plan(model.write(tmp_path / "bow.ifc")).plan
+    panes = [(wall, o) for wall in plan.walls for o in wall.openings]
+    assert {o.kind for _, o in panes} == {"window"}
+    assert len(panes) > 3
+    ends = [p for wall, o in panes for p in (wall.point_at(o.offset_m), wall.point_at(o.end_m))]
+    across = sorted(x - min(x for x, _ in (w.start for w in plan.walls)) - 4.0 for x, _ in ends)
+    assert (across[0], across[-1]) == pytest.approx((-2.5, 2.5), abs=0.02)
+    arc_m = 2 * 4.0 * asin(2.5 / 4.0)
+    assert sum(o.width_m for _, o in panes) == pytest.approx(arc_m, abs=0.05)
 
 
 def test_curtain_wall_without_material_is_glass(tmp_path) -> None:
