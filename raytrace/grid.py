@@ -8,9 +8,6 @@ import numpy as np
 from raytrace.arrays import Floats
 from raytrace.errors import SceneError
 
-MAX_CELLS = 1 << 27
-"""Most cells of a grid: as many as a file holds."""
-
 _SAME_PLACE_M = 1e-9
 
 MAX_CELLS = 10**8
@@ -71,20 +68,15 @@ class Grid:
                 "expected x_min < x_max, y_min < y_max and a positive cell size"
             )
         n_cells = (x_max - x_min) / cell_size_m * ((y_max - y_min) / cell_size_m)
-        if not n_cells <= MAX_CELLS:
+        if n_cells > MAX_CELLS:
+            least_m = math.sqrt((x_max - x_min) * (y_max - y_min) / MAX_CELLS)
             raise SceneError(
-                f"cell_size_m = {cell_size_m:g}: {n_cells:.3g} cells over bounds {bounds}, "
-                f"expected at most {MAX_CELLS}"
+                f"cell_size_m = {cell_size_m:g} makes {n_cells:.3g} cells: expected at most "
+                f"{MAX_CELLS}, so cells of {least_m:.2g} m or more"
             )
         half = 0.5 * cell_size_m
         n_x = max(1, int(np.floor((x_max - x_min + half) / cell_size_m - 1e-9)))
         n_y = max(1, int(np.floor((y_max - y_min + half) / cell_size_m - 1e-9)))
-        if n_x * n_y > MAX_CELLS:
-            least_m = math.sqrt((x_max - x_min) * (y_max - y_min) / MAX_CELLS)
-            raise ValueError(
-                f"cell_size_m = {cell_size_m:g} makes {n_x} x {n_y} cells: expected at most "
-                f"{MAX_CELLS}, so cells of {least_m:.2g} m or more"
-            )
         return cls(
             x_min + half + cell_size_m * np.arange(n_x, dtype=np.float64),
             y_min + half + cell_size_m * np.arange(n_y, dtype=np.float64),
