@@ -5,8 +5,10 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+import time
 
 import h5py
+import pytest
 from cli_plans import ROOM, done, room_file
 
 from rssnav import TrainingResult
@@ -60,3 +62,19 @@ def test_interrupted_training_keeps_its_finished_runs(tmp_path) -> None:
         f"rssnav: interrupted; {kept} of 100000 runs are finished and kept in {result}; the same "
         "command continues from there"
     )
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("after_s", [1.0, 4.0])
+def test_a_long_trace_ends_at_once_with_one_line(sent: signal.Signals, after_s: float) -> None:
+    command = [sys.executable, "-m", "rssnav", "paths", "flat", "--to", "9,6.5"]
+    command += ["--reflections", "20"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(after_s)
+        process.send_signal(sent)
+        sent_s = time.monotonic()
+        _, errors = process.communicate(timeout=TIMEOUT_S)
+    assert time.monotonic() - sent_s < 5.0
+    assert process.returncode == 128 + sent
+    assert errors.splitlines()[-1].startswith("rssnav: interrupted")
+    assert "Traceback" not in errors
