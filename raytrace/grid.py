@@ -1,5 +1,6 @@
 """The receiver grid of a map."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,9 @@ from raytrace.arrays import Floats
 from raytrace.errors import SceneError
 
 _SAME_PLACE_M = 1e-9
+
+MAX_CELLS = 10**8
+"""Most cells of a grid; the sums over paths of so many take some 10 GB."""
 
 
 @dataclass(frozen=True, eq=False)
