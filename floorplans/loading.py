@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 import tomllib
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from importlib import resources
 from itertools import accumulate, pairwise
 from math import dist
@@ -20,6 +21,7 @@ from floorplans.errors import Place, PlanError, format_place
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import Own, by_name
 from floorplans.plan import FloorPlan
+from floorplans.toml.arcs import along_arcs, chords_of_arc
 from floorplans.toml.materials import read_materials
 from floorplans.toml.table import Table, as_points
 from floorplans.toml.writer import FORMAT_VERSION, dumps
@@ -34,7 +36,7 @@ PLAN_KEYS = (
 )  # fmt: skip
 ORIGIN_KEYS = ("longitude_deg", "latitude_deg", "rotation_deg")
 DEFAULTS_KEYS = ("material", "thickness_m")
-WALL_KEYS = ("points", "material", "thickness_m", "height_m", "openings")
+WALL_KEYS = ("points", "arc", "material", "thickness_m", "height_m", "openings")
 OPENING_KEYS = ("kind", "offset_m", "width_m", "sill_m", "head_m", "material", "thickness_m")
 
 MAX_CHARACTERS = 4_000_000
@@ -181,7 +183,7 @@ def _read_unchecked(table: Table) -> PlanFile:
     start_x, start_y = table.coordinates("start", "xy")
     plan = UncheckedPlan(
         name=table.text("name"),
-        outline=_read_outline(table),
+        outline=_read_outline(table, [_points_of(row) for row in walls if "arc" in row.data]),
         walls=tuple(wall for walls in pieces for wall in walls),
         height_m=height_m,
         floor_material=floor,
@@ -205,10 +207,10 @@ def _check_version(table: Table) -> None:
         )
 
 
-def _read_outline(table: Table) -> Polygon:
-    shell = _ring(table.points("outline"), ("outline",))
+def _read_outline(table: Table, arcs: Sequence[Corners]) -> Polygon:
+    shell = along_arcs(_ring(table.points("outline"), ("outline",)), arcs)
     holes = [
-        _ring(as_points(hole, ("holes", index)), ("holes", index))
+        along_arcs(_ring(as_points(hole, ("holes", index)), ("holes", index)), arcs)
         for index, hole in enumerate(table.items("holes"))
     ]
     return Polygon(shell, holes)
@@ -246,10 +248,8 @@ def _layers_m(material: str | None, own: Own, otherwise: float | None) -> float 
 
 
 def _read_wall(table: Table, defaults: Table, ceiling_m: float, own: Own) -> list[Wall]:
-    """Return one wall for each straight piece of the polyline."""
-    points = table.points("points")
-    if len(points) < 2:
-        raise PlanError("expected at least two points", (*table.place, "points"), points)
+    """Return one wall for each straight piece of the polyline or arc."""
+    points = _points_of(table)
     material = table.text("material", defaults.optional_text("material"))
     default_m = _layers_m(material, own, defaults.optional_number("thickness_m"))
     thickness_m = table.number("thickness_m", default_m)
@@ -258,11 +258,40 @@ def _read_wall(table: Table, defaults: Table, ceiling_m: float, own: Own) -> lis
     lengths = [dist(start, end) for start, end in pairwise(points)]
     whole = Wall((0.0, 0.0), (sum(lengths), 0.0), material, thickness_m, height_m, tuple(openings))
     check_openings(whole, own, table.place)
+    if "arc" in table.data:
+        begins = list(accumulate(lengths, initial=0.0))
+        openings = [part for opening in openings for part in _split_at(begins[1:-1], opening)]
     by_piece = _distribute_openings(openings, lengths, points, table.place)
     return [
         Wall(start, end, material, thickness_m, height_m, own_openings)
         for (start, end), own_openings in zip(pairwise(points), by_piece, strict=True)
     ]
+
+
+def _points_of(table: Table) -> Corners:
+    """Points of a wall's polyline; those of an arc lie on it."""
+    points = table.points("points")
+    if len(points) < 2:
+        raise PlanError("expected at least two points", (*table.place, "points"), points)
+    if "arc" not in table.data:
+        return points
+    if len(points) > 2:
+        raise PlanError(
+            "expected two points, the start and the end of the arc",
+            (*table.place, "points"),
+            points,
+        )
+    x, y = table.coordinates("arc", "xy")
+    return chords_of_arc(points[0], (x, y), points[1], (*table.place, "arc"))
+
+
+def _split_at(corners: Sequence[float], opening: Opening) -> list[Opening]:
+    """Parts of an opening between the corners of a wall, at distances from its start [m]."""
+    inside = [
+        s for s in corners if opening.offset_m + TOLERANCE_M < s < opening.end_m - TOLERANCE_M
+    ]
+    stops = [opening.offset_m, *inside, opening.end_m]
+    return [replace(opening, offset_m=a, width_m=b - a) for a, b in pairwise(stops)]
 
 
 def _read_opening(table: Table, own: Own) -> Opening:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from floorplans import FloorPlan
+from floorplans.toml.arcs import MAX_CHORDS
 
 
 @dataclass(frozen=True)
@@ -40,10 +41,15 @@ class PlanSize:
         walls = [row for row in _rows(table.get("walls")) if isinstance(row, dict)]
         rings = (table.get("outline"), *_rows(table.get("holes")))
         return cls(
-            walls=sum(max(0, len(_rows(row.get("points"))) - 1) for row in walls),
+            walls=sum(_most_pieces(row) for row in walls),
             openings=sum(len(_rows(row.get("openings"))) for row in walls),
             outline_points=sum(len(_rows(ring)) for ring in rings),
         )
+
+
+def _most_pieces(wall: Mapping[str, object]) -> int:
+    """Most straight pieces that a wall of a file can have."""
+    return MAX_CHORDS if "arc" in wall else max(0, len(_rows(wall.get("points"))) - 1)
 
 
 def _rows(value: object) -> list[object]:
