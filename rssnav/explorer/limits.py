@@ -31,7 +31,9 @@ class Limits:
     work : int
         Maximum of walls times cells; the time of a map is roughly proportional to it.
     map_s : float
-        Time limit for tracing a map [s].
+        Time limit for tracing a map or the paths to a cell [s].
+    trace_bytes : int
+        Memory limit for the same [bytes].
     import_s : float
         Time limit for reading an upload [s].
     import_bytes : int
@@ -50,6 +52,7 @@ class Limits:
     cells: int = 40_000
     work: int = 15_000_000
     map_s: float = 300.0
+    trace_bytes: int = 1_000_000_000
     import_s: float = 60.0
     import_bytes: int = 4_000_000_000
 

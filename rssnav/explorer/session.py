@@ -71,7 +71,7 @@ class Session:
         scenes = LatestScene()
         self._turns = TabTurns(turns or FairTurns(self.limits.jobs))
         self.maps = MapTracer(self.limits, cache or MapCache(), scenes, self._turns)
-        self.paths = PathFinder(scenes, self._turns)
+        self.paths = PathFinder(self.limits, scenes, self._turns)
         self.training: LiveTraining | None = None
         self.cell: tuple[int, int] | None = None
         self.problem = ""

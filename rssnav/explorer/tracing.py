@@ -163,6 +163,21 @@ class LatestScene:
             return self._built.scene
 
 
+def end_of_time(ticket: Ticket, seconds: float) -> Callable[[], bool]:
+    """Return what ends a trace, within a kernel too, when it is cancelled or takes too long."""
+    ends_s = time.monotonic() + seconds
+
+    def stop() -> bool:
+        ticket.check()
+        if time.monotonic() > ends_s:
+            raise TimeoutError(
+                f"the trace takes longer than {seconds:g} s: use larger cells or fewer reflections"
+            )
+        return False
+
+    return stop
+
+
 class MapTracer:
     """Traces the newest requested map: reflections first, then all paths.
 
@@ -214,7 +229,7 @@ class MapTracer:
                 kept = self._stage(plan, settings, True, ticket)
                 self._cache.put(kept)
             self._finish(kept, ticket)
-        except (PlanError, SceneError, ValueError, TimeoutError) as error:
+        except (PlanError, SceneError, ValueError, TimeoutError, MemoryError) as error:
             ticket.check()
             self.problem = str(error)
         self.progress = None
@@ -225,7 +240,7 @@ class MapTracer:
         try:
             dragged = replace(settings.transmitter(plan), position=source)
             self._finish(self._stage(plan, settings, False, ticket, dragged), ticket)
-        except (PlanError, SceneError, ValueError):
+        except (PlanError, SceneError, ValueError, TimeoutError, MemoryError):
             ticket.check()
         self.progress = None
 
@@ -244,24 +259,14 @@ class MapTracer:
             transmitter or settings.transmitter(plan),
             settings.grid(plan),
             TraceConfig(settings.max_reflections, int(complete)),
-            progress=self._watch(complete, ticket),
+            progress=partial(self._show_progress, complete),
+            stop=end_of_time(ticket, self._limits.map_s),
+            max_memory_bytes=self._limits.trace_bytes,
         )
         return TracedMap(plan, settings, radio_map, complete)
 
-    def _watch(self, complete: bool, ticket: Ticket) -> Callable[[int, int], None]:
-        """Return a progress callback that stops a map when it is cancelled or takes too long."""
-        ends_s = time.monotonic() + self._limits.map_s
-
-        def progress(done: int, total: int) -> None:
-            ticket.check()
-            if time.monotonic() > ends_s:
-                raise TimeoutError(
-                    f"the map takes longer than {self._limits.map_s:g} s: use larger cells or "
-                    "fewer reflections"
-                )
-            self.progress = done / total if complete else 0.0
-
-        return progress
+    def _show_progress(self, complete: bool, done: int, total: int) -> None:
+        self.progress = done / total if complete else 0.0
 
     def _finish(self, traced: TracedMap, ticket: Ticket) -> None:
         ticket.check()
@@ -281,10 +286,11 @@ class PathFinder:
         Why the newest request failed; empty if it did not.
     """
 
-    def __init__(self, scenes: LatestScene, turns: TabTurns) -> None:
+    def __init__(self, limits: Limits, scenes: LatestScene, turns: TabTurns) -> None:
         self.latest: CellPaths | None = None
         self.busy = False
         self.problem = ""
+        self._limits = limits
         self._scenes = scenes
         self._thread = NewestOnly("paths", turns)
 
@@ -312,9 +318,11 @@ class PathFinder:
                 settings.transmitter(plan),
                 np.array([receiver]),
                 TraceConfig(settings.max_reflections),
+                stop=end_of_time(ticket, self._limits.map_s),
+                max_memory_bytes=self._limits.trace_bytes,
             )
             found = CellPaths(plan, settings, receiver, paths)
-        except (SceneError, ValueError) as error:
+        except (SceneError, ValueError, TimeoutError, MemoryError) as error:
             problem = str(error)
         ticket.check()
         self.latest, self.problem, self.busy = found, problem, False
