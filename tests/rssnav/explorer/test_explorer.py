@@ -264,8 +264,12 @@ def test_a_reader_gets_no_more_than_its_time_and_memory() -> None:
     content = dumps_geojson(FLAT).encode()
     with pytest.raises(PlanError, match=r"not read within 0\.01 s"):
         read_upload("flat.geojson", content, Limits(import_s=0.01))
+    large = content.replace(
+        b"{", b'{"comment": "' + bytes(5_000_000).replace(b"\0", b"-") + b'", ', 1
+    )
+    assert read_upload("flat.geojson", large) == FLAT
     with pytest.raises(PlanError):
-        read_upload("flat.geojson", content, Limits(import_bytes=30_000_000))
+        read_upload("flat.geojson", large, Limits(import_bytes=30_000_000))
 
 
 def test_walls_of_an_upload_are_counted_before_they_are_checked() -> None:
