@@ -17,9 +17,9 @@ from floorplans.errors import PlanError, unknown_name
 from floorplans.importers.material_names import (
     Lists,
     first_match,
-    full_name,
     matches,
     material_named,
+    wall_material_named,
     words_of,
 )
 from floorplans.materials import MATERIALS
@@ -127,7 +127,7 @@ def meaning_of(name: str, layers: Mapping[str, str] | None = None) -> Meaning:
     if kind == "wall" and is_foundation(name):
         return Meaning(None)
     if kind == "wall":
-        return Meaning("wall", full_name(words) or material)
+        return Meaning("wall", wall_material_named(name))
     if kind is None and material is not None:
         return Meaning("wall", material)
     return Meaning(kind)

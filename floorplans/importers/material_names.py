@@ -49,13 +49,14 @@ _LAYER_WORDS: Lists[str] = (
 )  # fmt: skip
 """Materials of layers of a wall that are no walls by themselves."""
 
+_STUD_WORDS = ("stud ", "studs ", "furr", "framing", "stander", "staender", "ossat", "montant")
 _CAVITY_WORDS = (
-    "stud", "furr", "framing", "joist", "rafter", "batten", "batt ", "air ", "airg", "airs", "airl",
+    *_STUD_WORDS, "studwork", "joist", "rafter", "batten", "batt ", "air ", "airg", "airs", "airl",
     "cavit", "void", "gap ", "*insul", "*wool", "*wolle", "rockw", "fibergl", "fibregl", "foam",
     "*schaum", "mousse", "espuma", "polyst", "polyur", "poliest", "poliur", "styro", "eps ", "xps ",
     "pur ", "pir ", "luft", "*luftsch", "lucht", "hohlr", "*dammung", "*dammst", "*daemm", "damm",
-    "isol", "aisla", "camara", "lame ", "laine", "lana ", "aria ", "interc", "stander", "staender",
-    "unterkonstr", "latt", "ossat", "montant", "spouw", "cellulo", "*zellul", "zwischenr",
+    "isol", "aisla", "camara", "lame ", "laine", "lana ", "aria ", "interc",
+    "unterkonstr", "latt", "spouw", "cellulo", "*zellul", "zwischenr",
 )  # fmt: skip
 """Studs, furring, insulation and air: a wave passes between or through them as in air."""
 
@@ -75,6 +76,21 @@ def material_named(name: str) -> str | None:
     ('concrete', None)
     """
     return first_match(words_of(name), _MATERIAL_WORDS)
+
+
+def wall_material_named(name: str) -> str | None:
+    """Material of a wall from its name; one of studs is plasterboard, whatever the studs are.
+
+    Examples
+    --------
+    >>> wall_material_named("Metal stud wall"), wall_material_named("A-WALL-CONC")
+    ('plasterboard', 'concrete')
+    """
+    words = words_of(name)
+    material = full_name(words) or first_match(words, _MATERIAL_WORDS)
+    if material in (None, "metal", "wood") and matches(words, _STUD_WORDS):
+        return "plasterboard"
+    return material
 
 
 def layer_material_named(name: str) -> str | None:
