@@ -123,9 +123,9 @@ def test_user_says_what_a_material_is(house_file) -> None:
     assert materials == {"plasterboard_brick_concrete_300", "wood"}
 
 
-def partitioned(tmp_path, describe, schema: str = "IFC4"):
+def partitioned(tmp_path, describe):
     """Import a hall whose partition `describe(model, wall)` gives a material."""
-    model = Model(schema=schema)
+    model = Model()
     model.add_storey("Ground floor")
     model.add_ring(HALL, thickness_m=0.3)
     describe(model, model.add_wall((3.0, 0.0), (3.0, 4.0), 0.124))
