@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rssnav.cli.console import note, print_table, say, stage_progress
-from rssnav.cli.options import MAX_RUNS, Seed, Style, Threads, examples
+from rssnav.cli.options import MAX_RUNS, MaxMemory, Seed, Style, Threads, examples, in_bytes
 from rssnav.kernel_cache import learning_cache, tracer_cache
 
 if TYPE_CHECKING:
@@ -74,6 +74,7 @@ def run_experiments(
         ),
     ] = True,
     style: Style = None,
+    max_memory: MaxMemory = None,
     threads: Threads = None,
 ) -> None:
     """Run the whole paper, or a study beyond it: maps, trainings, figures, tables, a report.
@@ -83,11 +84,12 @@ def run_experiments(
     """
     if what is not What.PAPER and runs is not None:
         raise typer.BadParameter("--runs applies to the paper only.")
+    max_memory_bytes = in_bytes(max_memory)
     try:
         if what is What.PAPER:
-            _run_paper(out, quick, runs, seed, threads, resume, style)
+            _run_paper(out, quick, runs, seed, threads, max_memory_bytes, resume, style)
         else:
-            _run_study(what, out, quick, seed, threads, resume, style)
+            _run_study(what, out, quick, seed, threads, max_memory_bytes, resume, style)
     except KeyboardInterrupt as interrupt:
         raise KeyboardInterrupt(
             f"interrupted; finished maps and runs are kept in {out}, and the same command "
@@ -101,6 +103,7 @@ def _run_paper(
     runs: int | None,
     seed: int,
     threads: int | None,
+    max_memory_bytes: int | None,
     resume: bool,
     style: str | None,
 ) -> None:
@@ -114,6 +117,7 @@ def _run_paper(
             runs=runs,
             seed=seed,
             threads=threads,
+            max_memory_bytes=max_memory_bytes,
             resume=resume,
             progress=show,
             notice=note,
@@ -127,6 +131,7 @@ def _run_study(
     quick: bool,
     seed: int,
     threads: int | None,
+    max_memory_bytes: int | None,
     resume: bool,
     style: str | None,
 ) -> None:
@@ -140,6 +145,7 @@ def _run_study(
             quick=quick,
             seed=seed,
             threads=threads,
+            max_memory_bytes=max_memory_bytes,
             resume=resume,
             progress=show,
             notice=note,
@@ -148,13 +154,24 @@ def _run_study(
         say(str(file))
 
 
-def remake_report(out: Out = RESULTS, style: Style = None, threads: Threads = None) -> None:
+def remake_report(
+    out: Out = RESULTS,
+    style: Style = None,
+    max_memory: MaxMemory = None,
+    threads: Threads = None,
+) -> None:
     """Recompute figures, tables and report from the maps and trainings of an earlier run."""
     from rssnav.experiments.paper import report_again
     from rssnav.pictures.style import chosen_style
 
     with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
-        paper = report_again(out, threads=threads, progress=show, notice=note)
+        paper = report_again(
+            out,
+            threads=threads,
+            max_memory_bytes=in_bytes(max_memory),
+            progress=show,
+            notice=note,
+        )
     _print(paper)
 
 

@@ -7,7 +7,7 @@ import typer
 
 from rssnav.cli.console import note
 from rssnav.cli.failures import EXIT_FAILURE, print_error
-from rssnav.cli.options import Plan, examples
+from rssnav.cli.options import MaxTabMemory, Plan, examples, in_bytes
 
 PORT = 5006
 ADDRESS = "127.0.0.1"
@@ -54,6 +54,7 @@ def explore(
             show_default=False,
         ),
     ] = None,
+    max_memory: MaxTabMemory = None,
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
     ] = True,
@@ -65,11 +66,13 @@ def explore(
     import floorplans
 
     try:
+        from rssnav.explorer.limits import Limits
         from rssnav.explorer.server import ServerSettings, serve
     except ModuleNotFoundError as error:
         if error.name not in ("panel", "bokeh"):
             raise
         print_error(MISSING)
         raise typer.Exit(EXIT_FAILURE) from error
-    settings = ServerSettings(port, address, tuple(allow_origin or ()), browser)
+    limits = Limits(trace_bytes=in_bytes(max_memory) or Limits.trace_bytes)
+    settings = ServerSettings(port, address, tuple(allow_origin or ()), browser, limits)
     serve(floorplans.load(plan), settings, lambda url: note(f"the explorer is at {url}"))

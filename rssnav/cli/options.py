@@ -1,7 +1,7 @@
 """Arguments and options that several commands share."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -89,17 +89,22 @@ MaxPaths = Annotated[
         show_default="no limit",
     ),
 ]
-MaxMemory = Annotated[
-    float | None,
-    typer.Option(
+
+
+def _max_memory(default: str) -> Any:
+    """Return the option of a command that traces, with its default in words."""
+    return typer.Option(
         "--max-memory",
         metavar="GB",
         min=0.001,
         max=1e6,
         help="Memory that a trace may take; it ends with a message before it takes more.",
-        show_default="half of what is free",
-    ),
-]
+        show_default=default,
+    )
+
+
+MaxMemory = Annotated[float | None, _max_memory("half of what is free")]
+MaxTabMemory = Annotated[float | None, _max_memory("1 for each tab")]
 Frequency = Annotated[
     float,
     typer.Option(

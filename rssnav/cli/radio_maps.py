@@ -122,6 +122,7 @@ def map_scenarios(
         "results/maps"
     ),
     style: Style = None,
+    max_memory: MaxMemory = None,
     threads: Threads = None,
     force: Force = False,
 ) -> None:
@@ -139,7 +140,13 @@ def map_scenarios(
                 show(stage, done, total)
 
             radio_map = make_map(
-                plan, file, threads=threads, progress=progress, notice=note, force=force
+                plan,
+                file,
+                threads=threads,
+                max_memory_bytes=in_bytes(max_memory),
+                progress=progress,
+                notice=note,
+                force=force,
             )
             if style is not None or _is_older(picture, file):
                 _draw(plan, radio_map, picture, style)

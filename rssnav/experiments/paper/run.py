@@ -70,6 +70,7 @@ class _Run:
     plan: TrainingPlan
     record: Record
     threads: int | None
+    max_memory_bytes: int | None
     progress: StageProgress
     notice: Notice
 
@@ -85,6 +86,7 @@ def run_paper(
     runs: int | None = None,
     seed: int = 0,
     threads: int | None = None,
+    max_memory_bytes: int | None = None,
     resume: bool = True,
     plans: Sequence[str | Path] = PLANS,
     progress: StageProgress | None = None,
@@ -108,6 +110,8 @@ def run_paper(
         Same seed, same results, for any number of threads.
     threads : int, optional
         Threads for maps and trainings; all cores by default.
+    max_memory_bytes : int, optional
+        Most memory that tracing may take; by default half of what is free.
     resume : bool
         Reuse existing trainings; otherwise train again.
     plans : sequence of str or Path
@@ -129,6 +133,8 @@ def run_paper(
         When there are not two plans, or for a parameter out of range.
     PlanError, SceneError, WorldError, MapFileError
         For a plan or map that cannot be used.
+    MemoryLimitError
+        Where tracing needs more memory than it may take.
     TrainingInterrupted
         On Ctrl-C while training. Finished realisations are saved every few seconds and then, and
         the next call continues from there.
@@ -140,7 +146,7 @@ def run_paper(
     record = Record(seed, runs, quick, tuple(str(plan) for plan in plans))
     store = TrainingStore(out / "training" / f"{runs}-runs", threads, resume, notice)
     plan = TrainingPlan(store, runs, seed)
-    run = _Run(out, plan, record, threads, progress, notice)
+    run = _Run(out, plan, record, threads, max_memory_bytes, progress, notice)
     scenarios = _load_scenarios(run, plans)
     results = _train(run, scenarios)
     data = PaperData(scenarios, results, _fly_first_episodes(run, results))
@@ -152,6 +158,7 @@ def report_again(
     out: str | Path = "results",
     *,
     threads: int | None = None,
+    max_memory_bytes: int | None = None,
     progress: StageProgress | None = None,
     notice: Notice | None = None,
 ) -> Paper:
@@ -172,6 +179,7 @@ def report_again(
         seed=settings.seed,
         plans=settings.plans,
         threads=threads,
+        max_memory_bytes=max_memory_bytes,
         progress=progress,
         notice=notice,
     )
@@ -203,6 +211,7 @@ def _load_scenarios(run: _Run, plans: Sequence[str | Path]) -> dict[int, Scenari
             plans,
             run.out / "maps",
             threads=run.threads,
+            max_memory_bytes=run.max_memory_bytes,
             progress=run.progress,
             notice=run.notice,
         )

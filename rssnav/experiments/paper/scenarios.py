@@ -53,6 +53,7 @@ def load_scenarios(
     folder: Path,
     *,
     threads: int | None,
+    max_memory_bytes: int | None,
     progress: StageProgress,
     notice: Notice,
 ) -> dict[int, Scenario]:
@@ -66,6 +67,8 @@ def load_scenarios(
         Folder of the maps, a file per plan.
     threads : int or None
         Threads for the tracer; all cores for None.
+    max_memory_bytes : int or None
+        Most memory that tracing may take; half of what is free for None.
     progress, notice : callable
         Called with the stage "map of <plan>", and with what is reused or recomputed.
 
@@ -77,6 +80,8 @@ def load_scenarios(
     ------
     PlanError, SceneError, MapFileError
         For a plan or map that cannot be used.
+    MemoryLimitError
+        Where tracing needs more memory than it may take.
     """
     loaded = [floorplans.load(plan) for plan in plans]
     scenarios: dict[int, Scenario] = {}
@@ -87,6 +92,7 @@ def load_scenarios(
             plan,
             folder / f"{plan.name}.h5",
             threads=threads,
+            max_memory_bytes=max_memory_bytes,
             progress=map_progress,
             notice=notice,
         )

@@ -141,6 +141,7 @@ def run_study(
     quick: bool = False,
     seed: int = 0,
     threads: int | None = None,
+    max_memory_bytes: int | None = None,
     resume: bool = True,
     progress: StageProgress | None = None,
     notice: Notice | None = None,
@@ -160,6 +161,8 @@ def run_study(
         Same seed, same results, for any number of threads.
     threads : int, optional
         Threads; all cores by default.
+    max_memory_bytes : int, optional
+        Most memory that tracing may take; by default half of what is free.
     resume : bool
         Reuse existing trainings; otherwise train again.
     progress : callable, optional
@@ -175,13 +178,20 @@ def run_study(
     ------
     PlanError, SceneError, WorldError, MapFileError
         For a plan or map that cannot be used.
+    MemoryLimitError
+        Where tracing needs more memory than it may take.
     TrainingInterrupted
         On Ctrl-C while training. Finished realisations are saved every few seconds and then, and
         the next call continues from there.
     """
     out, progress, notice = Path(out), progress or ignore, notice or ignore
     scenarios = load_scenarios(
-        PLANS, out / "maps", threads=threads, progress=progress, notice=ignore
+        PLANS,
+        out / "maps",
+        threads=threads,
+        max_memory_bytes=max_memory_bytes,
+        progress=progress,
+        notice=ignore,
     )
     runs = study.quick_runs if quick else study.runs
     store = TrainingStore(out / "training" / f"{study.name}-{runs}-runs", threads, resume, notice)

@@ -7,6 +7,7 @@ import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -283,7 +284,8 @@ def test_experiments_passes_its_options_on(monkeypatch, tmp_path) -> None:
     assert result.stderr.endswith("a map is up to date\n")
     assert paper.out == tmp_path
     assert paper.options == {
-        "quick": True, "runs": 3, "seed": 5, "threads": None, "resume": False,
+        "quick": True, "runs": 3, "seed": 5, "threads": None, "max_memory_bytes": None,
+        "resume": False,
     }  # fmt: skip
 
 
@@ -302,6 +304,46 @@ def test_a_study_is_run_and_its_files_are_named(monkeypatch, tmp_path) -> None:
     assert result.stdout.split() == [str(tmp_path / "tables" / "noise.csv")]
     assert asked["study"] is studies.STUDIES["noise"]
     assert (asked["out"], asked["quick"], asked["seed"]) == (tmp_path, True, 5)
+
+
+class TraceCalledError(Exception):
+    """Raised in place of a trace, with the options it was called with."""
+
+
+@pytest.mark.parametrize(
+    ("module", "function", "arguments"),
+    [
+        ("rssnav.cli.radio_maps", "make_map", ("map", "flat", "-o", "flat.h5")),
+        ("rssnav.cli.radio_maps", "make_map", ("maps",)),
+        ("rssnav.cli.paths", "trace_paths", ("paths", "flat", "--to", "2,2")),
+        ("rssnav.experiments.paper.scenarios", "make_map", ("experiments",)),
+        ("rssnav.experiments.paper.scenarios", "make_map", ("experiments", "noise")),
+        ("rssnav.experiments.paper.run", "run_paper", ("report",)),
+    ],
+)
+def test_every_command_that_traces_passes_its_memory_limit_on(
+    module, function, arguments, monkeypatch, tmp_path
+) -> None:
+    def trace(*_: object, max_memory_bytes: int, **__: object) -> None:
+        raise TraceCalledError(max_memory_bytes)
+
+    monkeypatch.chdir(tmp_path)
+    summary = {"run": {"seed": 0, "runs": 1, "quick": True, "plans": ["flat", "flat"]}}
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "summary.json").write_text(json.dumps(summary))
+    monkeypatch.setattr(f"{module}.{function}", trace)
+    result = run(*arguments, "--max-memory", 0.25)
+    assert isinstance(result.exception, TraceCalledError)
+    assert result.exception.args == (250_000_000,)
+
+
+@pytest.mark.parametrize(("options", "limit"), [((), 10**9), (("--max-memory", 3), 3 * 10**9)])
+def test_the_explorer_limits_the_memory_of_a_tab(options, limit, monkeypatch) -> None:
+    def serve(_plan: object, settings: Any, _ready: object) -> None:
+        raise TraceCalledError(settings.limits.trace_bytes)
+
+    monkeypatch.setattr("rssnav.explorer.server.serve", serve)
+    assert run("explore", "flat", *options).exception.args == (limit,)
 
 
 def test_a_study_refuses_the_options_of_the_paper(tmp_path) -> None:
