@@ -69,9 +69,14 @@ def _named_if_full(path: Path) -> Generator[None]:
     try:
         yield
     except OSError as error:
-        if error.errno not in _NO_SPACE:
+        named = error.filename is not None and not _is_temporary(error.filename, path)
+        if error.errno not in _NO_SPACE or named:
             raise
         raise OSError(error.errno, os.strerror(error.errno), str(path)) from error
+
+
+def _is_temporary(name: str, path: Path) -> bool:
+    return Path(name).name.startswith(_prefix(path))
 
 
 def _prefix(path: Path) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import tempfile
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -71,16 +73,20 @@ def test_the_file_that_is_full_is_named(name, files, tmp_path) -> None:
     assert [path for path in out.rglob("*") if path.is_file()] == []
 
 
-@pytest.mark.parametrize(("name", "load"), [("map", RadioMap.load), ("train", TrainingResult.load)])
-def test_what_was_computed_is_kept_elsewhere(name, load, files, tmp_path, monkeypatch) -> None:
-    elsewhere = tmp_path / "elsewhere"
+@pytest.mark.parametrize(("name", "kind"), [("map", RadioMap), ("train", TrainingResult)])
+def test_what_was_computed_is_kept_elsewhere(name, kind, files, tmp_path, monkeypatch) -> None:
+    elsewhere, out, save = tmp_path / "elsewhere", tmp_path / "out", kind.save
     elsewhere.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(elsewhere))
-    (tmp_path / "file").touch()
-    out = tmp_path / "file"  # no folder, so nothing can be written in it
-    arguments = [str(word).format(out=out, **files) for word in COMMANDS[name]]
-    result = run(*arguments)
+
+    def save_unless_full(content, path) -> None:
+        if Path(path).parent == out:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+        save(content, path)
+
+    monkeypatch.setattr(kind, "save", save_unless_full)
+    result = run(*(str(word).format(out=out, **files) for word in COMMANDS[name]))
     assert result.exit_code == 1
     (kept,) = elsewhere.glob("rssnav-*/*.h5")
     assert f"the result is kept in {kept}" in result.stderr
-    load(kept)
+    kind.load(kept)
