@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import signal
 import socket
 from collections.abc import Callable, Sequence
 from contextlib import closing
@@ -76,7 +77,8 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
     guard_websockets(settings.limits)
     names = host_names(settings.address)
     ready(f"http://{names[0]}:{port}/")
-    pn.serve(
+    on_interrupt = signal.getsignal(signal.SIGINT)
+    server = pn.serve(
         {"/": Tabs(plan, settings.limits).page},
         port=port,
         address=settings.address,
@@ -89,8 +91,12 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
         check_unused_sessions_milliseconds=UNUSED_MS // 2,
         title="rssnav explorer",
         show=settings.show,
+        start=False,
         verbose=False,
     )
+    signal.signal(signal.SIGINT, on_interrupt)  # Panel's handler stops with exit code 0
+    server.start()
+    server.io_loop.start()
 
 
 class Tabs:

@@ -20,8 +20,8 @@ from torture.jobs import JOBS, LIMIT_S, Job, Workshop, command, environment, run
 SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
 CODES = {signal.SIGKILL: -signal.SIGKILL, signal.SIGINT: 130, signal.SIGTERM: 143}
 """Exit codes after a signal."""
-STARTED_S = 0.3
-"""No signal comes before Python has begun to run the command."""
+START_S = 60.0
+"""Longest time until a program handles signals."""
 SLOW_S = 5.0
 """An interrupted process ends within this, longer where more processes run than there are cores."""
 
@@ -55,7 +55,7 @@ def kill_at_random(
     slowest_s, n_kills, duration_s = 0.0, 0, None
     for _ in range(kills or job.kills):
         sent = generator.choice(SIGNALS)
-        moment_s = STARTED_S + (duration_s or 4.0) * generator.random()
+        moment_s = (duration_s or 4.0) * generator.random()
         ended = _end(job, folder, sent, moment_s, while_writing=generator.random() < 0.3)
         faults += [f"{sent.name} after {moment_s:.2f} s: {fault}" for fault in ended.faults(sent)]
         faults += half_files(folder)
@@ -100,12 +100,14 @@ def _message_faults(errors: str) -> Iterator[str]:
 def _end(
     job: Job, folder: Path, sent: signal.Signals, moment_s: float, while_writing: bool
 ) -> _Ended:
-    """Send a signal at a moment, or as soon as the job writes."""
-    known, began = temporary_in(folder), time.monotonic()
+    """Send a signal at a moment after the program's first, or as soon as the job writes."""
+    known = temporary_in(folder)
     with subprocess.Popen(
         command(job.arguments), cwd=folder, env=environment(), stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE, text=True, errors="replace",
     ) as process:  # fmt: skip
+        wait_until_signals_are_handled(process)
+        began = time.monotonic()
         while process.poll() is None and time.monotonic() - began < moment_s:
             time.sleep(0.002)
             if while_writing and temporary_in(folder) - known:
@@ -119,6 +121,17 @@ def _end(
             _, errors = process.communicate()
     code = process.returncode
     return _Ended(code, errors, was_running, at - began, time.monotonic() - at)
+
+
+def wait_until_signals_are_handled(process: subprocess.Popen[str]) -> None:
+    """Wait for the program's first moment; until then Python starts, and ends in its own ways."""
+    status = Path(f"/proc/{process.pid}/status")
+    bit, ends = 1 << (signal.SIGTERM - 1), time.monotonic() + START_S
+    while process.poll() is None and time.monotonic() < ends:
+        caught = re.search(r"SigCgt:\s*(\w+)", status.read_text())
+        if caught and int(caught.group(1), 16) & bit:
+            return
+        time.sleep(0.002)
 
 
 def fill_the_disk(name: str, workshop: Workshop, generator: random.Random) -> Attacked:

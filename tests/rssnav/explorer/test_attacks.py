@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import time
 from collections.abc import Callable, Iterator
 
@@ -242,3 +243,15 @@ def test_hostile_uploads_stop_nobody(tab, make) -> None:
         attacker.upload("evil.toml", content)
         tab.still_works()
     attacker.until(lambda: "evil.toml" in attacker.texts)
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_server_at_once_with_one_line(sent: signal.Signals, tmp_path) -> None:
+    with running_server(tmp_path / "log.txt") as server, clients(server) as make:
+        make().open()  # its map is being traced
+        server.process.send_signal(sent)
+        sent_s = time.monotonic()
+        assert server.process.wait(timeout=20.0) == 128 + sent
+        assert time.monotonic() - sent_s < 5.0
+        _, line = server.log.read_text(encoding="utf-8").splitlines()
+        assert line.startswith("rssnav: interrupted")
