@@ -52,15 +52,17 @@ def kill_at_random(
     """End a job several times, then let it finish: nothing is half, lost or left behind."""
     job, folder, wanted = JOBS[name], workshop.before(name), workshop.after(name)
     faults: list[str] = []
-    slowest_s, n_kills, duration_s = 0.0, 0, None
+    slowest_s, n_kills, duration_s = 0.0, 0, workshop.duration_s(name)
     for _ in range(kills or job.kills):
         sent = generator.choice(SIGNALS)
-        moment_s = (duration_s or 4.0) * generator.random()
+        moment_s = duration_s * generator.random()
         ended = _end(job, folder, sent, moment_s, while_writing=generator.random() < 0.3)
         faults += [f"{sent.name} after {moment_s:.2f} s: {fault}" for fault in ended.faults(sent)]
         faults += half_files(folder)
         slowest_s, n_kills = max(slowest_s, ended.took_s), n_kills + ended.was_running
-        duration_s = max(duration_s or 0.0, ended.ran_s)
+        if not ended.was_running:  # there is nothing left to resume
+            faults += differences(folder, wanted)
+            folder = workshop.before(name)
     try:
         run_to_end(job, folder)
     except RuntimeError as error:
@@ -74,7 +76,6 @@ class _Ended:
     code: int
     errors: str
     was_running: bool
-    ran_s: float
     took_s: float
 
     def faults(self, sent: signal.Signals) -> Iterator[str]:
@@ -120,7 +121,7 @@ def _end(
             process.kill()
             _, errors = process.communicate()
     code = process.returncode
-    return _Ended(code, errors, was_running, at - began, time.monotonic() - at)
+    return _Ended(code, errors, was_running, time.monotonic() - at)
 
 
 def wait_until_signals_are_handled(process: subprocess.Popen[str]) -> None:

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,7 +46,7 @@ class Job:
 
 
 _TRAIN = ("train", "room.toml", "--map", "room.h5", "--agent", "location", "--seed", "3")
-_STUDY = ("--out", "results", "--quick", "--runs", "1", "--threads", "1")
+_STUDY = ("--out", "results", "--quick", "--threads", "1")
 
 JOBS = {
     "map": Job(("map", "room.toml", "-o", "room.h5", *OPEN)),
@@ -67,7 +68,7 @@ JOBS = {
     "plan show": Job(("plan", "show", "room.toml", "-o", "plan.png")),
     "plan check": Job(("plan", "check", "misfit.toml", "--fix", "-o", "fixed.toml")),
     "maps": Job(("maps", "--out", "results/maps"), kills=6),
-    "experiments": Job(("experiments", *_STUDY), ("maps",), kills=12),
+    "experiments": Job(("experiments", "--runs", "1", *_STUDY), ("maps",), kills=12),
     "noise": Job(("experiments", "noise", *_STUDY), ("maps",), kills=12),
     "sensitivity": Job(("experiments", "sensitivity", *_STUDY), ("maps",), kills=12),
     "comparison": Job(("experiments", "comparison", *_STUDY), ("maps",), kills=12),
@@ -100,6 +101,7 @@ class Workshop:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._durations_s: dict[str, float] = {}
 
     def before(self, name: str) -> Path:
         """Return a new folder in which a job can start."""
@@ -113,10 +115,16 @@ class Workshop:
         """Return the folder that a job has left undisturbed; it is run once."""
         done = self._folder / f"after {name}"
         if not done.exists():
-            folder = self.before(name)
+            folder, began_s = self.before(name), time.monotonic()
             run_to_end(self._job(name), folder)
+            self._durations_s[name] = time.monotonic() - began_s
             folder.rename(done)
         return done
+
+    def duration_s(self, name: str) -> float:
+        """Return how long a job took undisturbed [s]."""
+        self.after(name)
+        return self._durations_s[name]
 
     def _job(self, name: str) -> Job:
         return (JOBS | PREPARATIONS)[name]
