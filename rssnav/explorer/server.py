@@ -12,6 +12,7 @@ from ipaddress import ip_address
 from typing import Any
 
 import panel as pn
+from panel.io.server import Server
 from tornado.websocket import WebSocketClosedError
 
 from floorplans import FloorPlan
@@ -95,6 +96,7 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
         verbose=False,
     )
     signal.signal(signal.SIGINT, on_interrupt)  # Panel's handler stops with exit code 0
+    assert isinstance(server, Server)
     server.start()
     server.io_loop.start()
 
