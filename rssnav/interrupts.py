@@ -7,6 +7,7 @@ whole or not at all, so this is safe at any moment. It uses the standard library
 importing others may take a while.
 """
 
+import atexit
 import os
 import signal
 import socket
@@ -55,6 +56,7 @@ class Interrupts:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, self._interrupt)
         sys.unraisablehook = _report_unraisable
+        atexit.register(_ignore_signals)
 
     @contextmanager
     def keeping(self) -> Generator[None]:
@@ -103,6 +105,12 @@ class Interrupts:
                 is_terminal = os.isatty(2)
                 os.write(2, _CLEAR_LINE + _SHOW_CURSOR + line if is_terminal else line)
         os._exit(self.exit_code)
+
+
+def _ignore_signals() -> None:
+    """Ignore signals once all is done: Python would restore their defaults, which kill it."""
+    for number in _SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 def _report_unraisable(unraisable: Any) -> None:

@@ -78,3 +78,20 @@ def test_a_long_trace_ends_at_once_with_one_line(sent: signal.Signals, after_s: 
     assert process.returncode == 128 + sent
     assert errors.splitlines()[-1].startswith("rssnav: interrupted")
     assert "Traceback" not in errors
+
+
+@pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM"])
+def test_a_signal_after_all_is_done_changes_nothing(sent: str) -> None:
+    program = f"""
+import os, signal
+from rssnav.interrupts import INTERRUPTS
+
+class Last:
+    def __del__(self, end=os.kill, process=os.getpid(), sent=signal.{sent}):
+        end(process, sent)
+
+last = Last()
+INTERRUPTS.install()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
