@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 
 MAX_POWER_DBM = 1000.0
+MOST_PATHS = 2**63 - 1
+_MOST = {"max_reflections": 20, "max_diffractions": 1, "max_transmissions": 20}
 
 
 @dataclass(frozen=True)
@@ -36,15 +38,19 @@ class TraceConfig:
 
     def __post_init__(self) -> None:
         """Check the limits; raise ValueError for one out of range."""
-        if not 0 <= self.max_reflections <= 20:
-            raise ValueError(f"max_reflections = {self.max_reflections}: expected 0 to 20")
-        if self.max_diffractions not in (0, 1):
-            raise ValueError(f"max_diffractions = {self.max_diffractions}: expected 0 or 1")
-        if not 0 <= self.max_transmissions <= 20:
-            raise ValueError(f"max_transmissions = {self.max_transmissions}: expected 0 to 20")
+        for name, most in _MOST.items():
+            self._check_integer(name, 0, most)
         if not self.min_power_dbm <= MAX_POWER_DBM:
             raise ValueError(
                 f"min_power_dbm = {self.min_power_dbm}: expected at most {MAX_POWER_DBM:g} dBm"
             )
-        if self.max_paths is not None and self.max_paths < 1:
-            raise ValueError(f"max_paths = {self.max_paths}: expected 1 or more, or None")
+        object.__setattr__(self, "min_power_dbm", float(self.min_power_dbm))
+        if self.max_paths is not None:
+            self._check_integer("max_paths", 1, MOST_PATHS)
+
+    def _check_integer(self, name: str, least: int, most: int) -> None:
+        """Check a whole number, and keep it as int: kernels are compiled for each type."""
+        value = getattr(self, name)
+        if not (least <= value <= most and value % 1 == 0):
+            raise ValueError(f"{name} = {value}: expected an integer from {least} to {most}")
+        object.__setattr__(self, name, int(value))

@@ -1,5 +1,7 @@
 """Announcing that a map will take long."""
 
+import math
+
 from raytrace import CostEstimate, Grid, Scene, TraceConfig, Transmitter, estimate_cost
 
 UNITS_S = {"years": 3.156e7, "days": 86400.0, "hours": 3600.0, "minutes": 60.0}
@@ -7,15 +9,22 @@ UNITS_S = {"years": 3.156e7, "days": 86400.0, "hours": 3600.0, "minutes": 60.0}
 LONG_S = 60.0
 """A map that takes longer is announced [s]."""
 
+LEAST_CELLS = 100
+"""Larger cells are proposed where as many remain."""
+
 MAX_SILENT_WORK = 2e6
 """Maps of less `work` are not estimated: the largest of them take some seconds."""
 
 
 def work(scene: Scene, grid: Grid, config: TraceConfig) -> float:
-    """Return a rough measure of a map's work: cells times edges, doubled by every reflection."""
+    """Return a rough measure of a map's work.
+
+    Cells times edges times one more than the transmissions, doubled by every reflection.
+    """
     n_edges = len(scene.vertical_edges) + len(scene.horizontal_edges)
     edges = 1 + n_edges * config.max_diffractions
-    return grid.x.size * grid.y.size * edges * 2.0 ** (config.max_reflections - 6)
+    cells, walls = grid.x.size * grid.y.size, 1 + config.max_transmissions
+    return cells * edges * walls * 2.0 ** (config.max_reflections - 6)
 
 
 def announcement(
@@ -45,8 +54,22 @@ def sentence(cost: CostEstimate, grid: Grid) -> str:
     return (
         f"this map will take {roughly} {_duration(cost.seconds)}: some {_count(cost.paths)} paths "
         f"over {_count(cells)} cells; larger cells, fewer reflections, --min-power or "
-        "--max-paths make it shorter"
+        f"--max-paths make it shorter{_affordable(cost, grid)}"
     )
+
+
+def _affordable(cost: CostEstimate, grid: Grid) -> str:
+    """Return the options with which the map takes at most about `LONG_S`, in words."""
+    options: list[str] = []
+    orders = [n for n, seconds in enumerate(cost.seconds_of_lower_orders) if seconds <= LONG_S]
+    if orders:
+        options.append(f"--reflections {orders[-1]}")
+    left_s = LONG_S - cost.seconds_for_beams
+    if left_s > 0.0:
+        larger = math.sqrt((cost.seconds - cost.seconds_for_beams) / left_s)
+        if larger**2 < grid.x.size * grid.y.size / LEAST_CELLS:
+            options.append(f"--cell-size {1.05 * larger * grid.cell_size_m:.2g}")
+    return f"; a minute or less with {' or '.join(options)}" if options else ""
 
 
 def _duration(seconds: float) -> str:

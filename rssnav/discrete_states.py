@@ -171,10 +171,10 @@ def reading_states(
         state_of_cell = rule.discrete_states(rss_dbm)
         n_initial = n_most = int(state_of_cell.max()) + 1
     elif isinstance(rule, IntervalStates):
-        kind, edges = INTERVALS, np.array(rule.edges_dbm)
+        kind, edges = INTERVALS, np.array(rule.edges_dbm, dtype=np.float64)
         n_initial = n_most = edges.size + 1
     else:
-        kind, threshold = TOLERANCE, rule.threshold_db
+        kind, threshold = TOLERANCE, float(rule.threshold_db)
         n_bins = int((high_dbm - low_dbm) * 2.0 / threshold) + 1
         n_most = n_bins if fluctuation.sigma_db > 0.0 else min(n_bins, rss_dbm.size)
         n_initial = 0
@@ -185,10 +185,10 @@ def reading_states(
         edges_dbm=edges,
         threshold_db=threshold,
         low_dbm=low_dbm,
-        sigma_db=fluctuation.sigma_db,
-        correlation=fluctuation.correlation,
-        terminal_dbm=goal.terminal_dbm,
-        goal_reward=goal.reward,
+        sigma_db=float(fluctuation.sigma_db),
+        correlation=float(fluctuation.correlation),
+        terminal_dbm=float(goal.terminal_dbm),
+        goal_reward=float(goal.reward),
         goal_replaces=goal.replaces,
     )
     return ReadingStates(sensor, n_bins, n_most, n_initial)

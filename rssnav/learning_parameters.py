@@ -82,12 +82,20 @@ class QLearning:
         for name in ("goal_reward", "initial_q"):
             value = getattr(self, name)
             require(math.isfinite(value), name, value, "a finite number")
-        require(self.max_steps >= 1, "max_steps", self.max_steps, "at least 1")
+        whole = 1 <= self.max_steps < 2**31 and self.max_steps % 1 == 0
+        require(whole, "max_steps", self.max_steps, "an integer from 1 to 2147483647")
         for name, choices in _CHOICES.items():
             value = getattr(self, name)
             require(value in choices, name, value, " or ".join(map(repr, choices)))
+        for name in _FLOATS:  # kernels are compiled for each type, and Q has that of `initial_q`
+            object.__setattr__(self, name, float(getattr(self, name)))
+        object.__setattr__(self, "max_steps", int(self.max_steps))
 
 
+_FLOATS = (
+    "gamma", "epsilon_max", "epsilon_min", "alpha_max", "alpha_min", "eta", "goal_reward",
+    "initial_q",
+)  # fmt: skip
 _CHOICES = {
     "goal_reward_is": ("added", "instead"),
     "maximum_over": ("possible", "all"),

@@ -37,6 +37,8 @@ class Transmitter:
             raise ValueError(f"power_dbm = {self.power_dbm}: expected a finite number")
         if not 0.0 < self.frequency_hz < float("inf"):
             raise ValueError(f"frequency_hz = {self.frequency_hz}: expected a positive number")
+        for name in ("power_dbm", "frequency_hz"):
+            object.__setattr__(self, name, float(getattr(self, name)))
 
     @property
     def wavelength_m(self) -> float:

@@ -56,7 +56,7 @@ GOLDEN = 0.618
 REACHED_RECEIVERS = 64
 """More tiles are taken until this many of their receivers have a path."""
 
-LONGEST_S = 0.8
+LONGEST_S = 0.6
 """Processor time for the full order, and again for lower ones [s]."""
 
 MAX_BYTES = 200 << 20
@@ -83,12 +83,18 @@ class CostEstimate:
         Memory for sums and for beams, beyond what the process uses already.
     is_extrapolated
         Whether the numbers follow from those of fewer reflections; they are rough then.
+    seconds_for_beams
+        The part of `seconds` that does not depend on the number of cells [s].
+    seconds_of_lower_orders
+        Time with 0, 1, ... reflections [s]; only where some of them were traced.
     """
 
     paths: int
     seconds: float
     memory_bytes: int
     is_extrapolated: bool = False
+    seconds_for_beams: float = 0.0
+    seconds_of_lower_orders: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -117,6 +123,12 @@ class _Sample:
     summing_s: float
     most_beams: float
 
+    def seconds(self, n_receivers: int, threads: int, adding_s: float) -> float:
+        """Time for so many receivers, where a class's sum of one is added in `adding_s` [s]."""
+        everywhere = n_receivers / self.n_receivers
+        working = (self.growing_s + everywhere * self.summing_s) / threads
+        return everywhere * self.preparing_s + working + self.n_classes * n_receivers * adding_s
+
 
 def estimate_cost(
     scene: Scene,
@@ -144,20 +156,24 @@ def estimate_cost(
     n_receivers = grid.x.size * grid.y.size
     sampler = _Sampler(scene, transmitter, grid)
     sampler.compile(config)
-    sample = sampler.sample(config, LONGEST_S)
+    sample, lower = sampler.sample(config, LONGEST_S), list[_Sample]()
     is_extrapolated = sample is None
     if sample is None:
-        sample = _extrapolated(sampler.lower_orders(config), config.max_reflections)
-    everywhere = n_receivers / sample.n_receivers
-    working = (sample.growing_s + everywhere * sample.summing_s) / threads
-    adding = sample.n_classes * everywhere * _seconds_to_add(sample.n_receivers, config)
+        lower = sampler.lower_orders(config)
+        known = lower or [sampler.least(config)]
+        sample = _extrapolated(known, config.max_reflections)
+    if lower:
+        lower += [_extrapolated(lower, n) for n in range(len(lower), config.max_reflections)]
+    adding_s = _seconds_to_add(sample.n_receivers, config) / sample.n_receivers
     in_work = sums_in_work(sample.n_classes, threads)
     sums = in_work * sums_bytes(n_receivers, config.max_reflections)
     return CostEstimate(
-        round(sample.paths * everywhere),
-        everywhere * sample.preparing_s + working + adding,
+        round(sample.paths * n_receivers / sample.n_receivers),
+        sample.seconds(n_receivers, threads, adding_s),
         sums + round(threads * BYTES_A_BEAM * sample.most_beams),
         is_extrapolated,
+        sample.growing_s / threads,
+        tuple(order.seconds(n_receivers, threads, adding_s) for order in lower),
     )
 
 
@@ -179,7 +195,7 @@ class _Sampler:
             workers.run(self._traced, point, small, workers.guard(MAX_BYTES))
 
     def lower_orders(self, config: TraceConfig) -> list[_Sample]:
-        """Return samples of 0, 1, ... reflections, as many as there is time for; at least one."""
+        """Return samples of 0, 1, ... reflections, as many as there is time for."""
         samples: list[_Sample] = []
         ends_s = time.process_time() + LONGEST_S
         for order in range(config.max_reflections):
@@ -188,12 +204,13 @@ class _Sampler:
             if found is None:
                 break
             samples.append(found)
-        if samples:
-            return samples
-        least = TraceConfig(0, 0, min_power_dbm=config.min_power_dbm)
-        found = self.sample(least, math.inf)
+        return samples
+
+    def least(self, config: TraceConfig) -> _Sample:
+        """Return the sample of line of sight alone."""
+        found = self.sample(TraceConfig(0, 0, min_power_dbm=config.min_power_dbm), math.inf)
         assert found is not None
-        return [found]
+        return found
 
     def sample(self, config: TraceConfig, longest_s: float) -> _Sample | None:
         """Return a sample; None where it takes too much time or memory."""

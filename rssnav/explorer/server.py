@@ -189,6 +189,8 @@ def _free_port(address: str, port: int) -> int:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             probe.bind(place)
             return int(probe.getsockname()[1])
+    except UnicodeError as error:  # a name that is none: too long, or with an empty part
+        raise OSError(f"cannot listen on {address:.200}: expected an address or a name") from error
     except OSError as error:
         raise OSError(
             f"cannot listen on {address} port {port}: {error.strerror}; choose another with --port"

@@ -22,7 +22,7 @@ from fuzz import samples
 from rssnav.cli import app
 
 RIGHT_CODES = (0, 1, 2, 130)
-INTERRUPT_AFTER_S = 0.5
+INTERRUPT_AFTER_S, INTERRUPT_AGAIN_S = 0.5, 2.0
 
 ABSURD = (
     "", " ", "-1", "0", "1", "2", "-0.0", "1e-9", "1e308", "-1e308", "1e999", "nan", "inf", "-inf",
@@ -159,9 +159,9 @@ def _files() -> dict[str, bytes]:
 
 @contextmanager
 def _interrupted() -> Iterator[None]:
-    """Send SIGINT to this process after a moment."""
+    """Send SIGINT to this process after a moment, and again: libraries drop some interrupts."""
     signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
-    signal.setitimer(signal.ITIMER_REAL, INTERRUPT_AFTER_S)
+    signal.setitimer(signal.ITIMER_REAL, INTERRUPT_AFTER_S, INTERRUPT_AGAIN_S)
     try:
         with suppress(KeyboardInterrupt):
             yield

@@ -1,9 +1,12 @@
 """A user who asks for a long map is told beforehand; one who asks for a short one is not."""
 
+import time
+from dataclasses import replace
+
 import pytest
 
 import floorplans
-from raytrace import CostEstimate, Grid, TraceConfig, Transmitter
+from raytrace import CostEstimate, Grid, TraceConfig, Transmitter, estimate_cost
 from rssnav import cost_notice
 from rssnav.maps import make_map
 from rssnav.scenes import scene_of
@@ -54,3 +57,28 @@ def test_the_paper_s_maps_are_not_worth_an_estimate() -> None:
             scene_of(plan), Transmitter(plan.source), grid, TraceConfig()
         )
         assert words is None
+
+
+def test_a_notice_says_what_would_be_affordable() -> None:
+    grid = Grid.over((0.0, 0.0, 150.0, 100.0), 0.5, 1.5)
+    seconds = (1.0, 20.0, 59.0, 200.0)
+    cost = CostEstimate(10**9, 530.0, 10, True, seconds_for_beams=10.0)
+    known = replace(cost, seconds_of_lower_orders=seconds)
+    ends = "a minute or less with --reflections 2 or --cell-size 1.7"
+    assert cost_notice.sentence(known, grid).endswith(ends)
+    assert cost_notice.sentence(cost, grid).endswith("a minute or less with --cell-size 1.7")
+    hopeless = replace(cost, seconds_for_beams=100.0)
+    assert cost_notice.sentence(hopeless, grid).endswith("make it shorter")
+
+
+@pytest.mark.parametrize("reflections, transmissions", [(20, 0), (6, 20), (20, 20)])
+def test_absurd_requests_are_estimated_soon(reflections: int, transmissions: int) -> None:
+    plan = floorplans.load("scenario2")
+    scene, grid = scene_of(plan), Grid.over(plan.bounds, 1.0, 2.0)
+    config = TraceConfig(reflections, 1, transmissions)
+    assert cost_notice.work(scene, grid, config) > cost_notice.MAX_SILENT_WORK
+    began = time.process_time()
+    cost = estimate_cost(scene, Transmitter(plan.source), grid, config)
+    assert time.process_time() - began < 4.0  # a second or two, twice that where much is at work
+    assert cost.is_extrapolated
+    assert len(cost.seconds_of_lower_orders) in (0, reflections)

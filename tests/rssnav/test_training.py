@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -273,3 +274,19 @@ def test_a_step_budget_survives_the_file(room_world, tmp_path):
     result = train(room_world, RssAgent(), runs=1, episodes=9, max_total_steps=50)
     result.save(tmp_path / "result.h5")
     assert type(result).load(tmp_path / "result.h5").schedule == result.schedule
+
+
+def test_results_do_not_depend_on_the_types_of_numbers(room_world):
+    learning = replace(LEARNING, gamma=1.0, goal_reward=8.0, initial_q=4.0)
+    others = {"gamma": 1, "goal_reward": np.int64(8), "initial_q": np.float32(4), "max_steps": 5e2}
+    expected = train(room_world, LocationAgent(), runs=2, episodes=20, learning=learning)
+    found = train(
+        room_world, LocationAgent(), runs=2, episodes=20, learning=replace(learning, **others)
+    )
+    assert_equal_runs(found, expected)
+
+
+@pytest.mark.parametrize("steps", [0, 0.5, 2**31, math.inf, math.nan])
+def test_a_limit_of_steps_is_an_integer(steps):
+    with pytest.raises(ValueError, match=r"max_steps = .*: expected an integer"):
+        QLearning(max_steps=steps)

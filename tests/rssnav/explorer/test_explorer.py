@@ -473,6 +473,13 @@ def test_command_refuses_a_port_in_use() -> None:
     assert "--port" in result.stderr
 
 
+@pytest.mark.parametrize("address", ["x" * 300, "a..b", "256.1.1.1"])
+def test_command_refuses_an_address_that_is_none(address) -> None:
+    result = run("explore", "flat", "--no-browser", "--address", address)
+    assert result.exit_code == 1
+    assert result.stderr.startswith(f"rssnav: cannot listen on {address[:200]}")
+
+
 def test_command_refuses_an_origin_with_a_scheme() -> None:
     result = run("explore", "flat", "--no-browser", "--allow-origin", "http://lab")
     assert result.exit_code == 2
