@@ -223,10 +223,10 @@ def _receivers(
     """Function that makes receivers that share all but their fluctuation."""
     return lambda: Receiver(
         world.rss_dbm,
-        fluctuation.sigma_db,
-        fluctuation.correlation,
+        float(fluctuation.sigma_db),
+        float(fluctuation.correlation),
         np.zeros(1),
-        found_dbm,
+        float(found_dbm),
     )
 
 
@@ -260,8 +260,8 @@ def _model(searcher: ParticleFilter, world: GridWorld) -> Model:
         low=np.array([*low_xy, *(low for low, _ in ranges)]),
         high=np.array([*high_xy, *(high for _, high in ranges)]),
         jitter=_JITTER,
-        sigma_db=searcher.sigma_db,
-        fresh_fraction=searcher.fresh_fraction,
+        sigma_db=float(searcher.sigma_db),
+        fresh_fraction=float(searcher.fresh_fraction),
         found_m=2.0,
         steps_to_draw=searcher.steps_to_draw,
     )

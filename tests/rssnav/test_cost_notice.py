@@ -71,7 +71,7 @@ def test_a_notice_says_what_would_be_affordable() -> None:
     assert cost_notice.sentence(hopeless, grid).endswith("make it shorter")
 
 
-@pytest.mark.parametrize("reflections, transmissions", [(20, 0), (6, 20), (20, 20)])
+@pytest.mark.parametrize(("reflections", "transmissions"), [(20, 0), (6, 20), (20, 20)])
 def test_absurd_requests_are_estimated_soon(reflections: int, transmissions: int) -> None:
     plan = floorplans.load("scenario2")
     scene, grid = scene_of(plan), Grid.over(plan.bounds, 1.0, 2.0)
