@@ -33,3 +33,14 @@ def test_half_files_and_litter_are_seen(tmp_path) -> None:
     assert list(differences(found, wanted)) == [
         "map.h5 is missing", "room.json is litter", "room.toml is different",
     ]  # fmt: skip
+
+
+def test_tables_are_compared_without_measured_times(tmp_path) -> None:
+    found, wanted = tmp_path / "found", tmp_path / "wanted"
+    for folder, cpu_s in ((found, 1), (wanted, 2)):
+        folder.mkdir()
+        (folder / "runs.csv").write_text(f"run,cpu_time_s\n1,{cpu_s}\n")
+        (folder / "claims.csv").write_text(f"claim,value\nCPU time falls,{cpu_s}\nothers,3\n")
+    assert list(differences(found, wanted)) == []
+    (found / "claims.csv").write_text("claim,value\nCPU time falls,1\nothers,4\n")
+    assert list(differences(found, wanted)) == ["claims.csv is different"]
