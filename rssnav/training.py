@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed, wait
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass
+from itertools import islice
 from threading import Event
 
 import numpy as np
@@ -32,6 +33,7 @@ Checkpoint = Callable[[TrainingResult], None]
 
 _CHUNK_EPISODES = 64  # between two checks for an interrupt
 _LONGEST_END_S = 0.3  # longest wait for threads after an interrupt
+_AHEAD = 4  # realisations submitted for each thread
 _CHECKPOINT_S = 3.0
 _CHECKPOINT_FRACTION = 0.05  # of the time, at most
 
@@ -309,21 +311,28 @@ def _on_threads(
     trainer: _Trainer, run_ids: Sequence[int], threads: int, monitor: _Monitor
 ) -> tuple[list[_Realisation], bool]:
     """Train realisations on a pool; returns the finished ones, and whether Ctrl-C stopped it."""
+    finished: list[_Realisation] = []
     interrupted = False
+    waiting = iter(run_ids)
     pool = ThreadPoolExecutor(threads)
-    futures = [pool.submit(trainer, run_id) for run_id in run_ids]
+    running = {pool.submit(trainer, run_id) for run_id in islice(waiting, _AHEAD * threads)}
     try:
-        for future in as_completed(futures):
-            if (finished := future.result()) is not None:
-                monitor(finished)
+        while running:
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                running |= {pool.submit(trainer, run_id) for run_id in islice(waiting, 1)}
+                running.remove(future)
+                if (realisation := future.result()) is not None:
+                    finished.append(realisation)
+                    monitor(realisation)
     except KeyboardInterrupt:
         interrupted = True
     finally:
         trainer.stop.set()
         pool.shutdown(wait=False, cancel_futures=True)
-        wait(futures, _LONGEST_END_S)
-    results = [f.result() for f in futures if f.done() and not f.cancelled()]
-    return [result for result in results if result is not None], interrupted
+        done, _ = wait(running, _LONGEST_END_S)
+    late = [future.result() for future in done if not future.cancelled()]
+    return finished + [realisation for realisation in late if realisation is not None], interrupted
 
 
 def _collect(

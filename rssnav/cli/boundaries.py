@@ -12,9 +12,9 @@ from typing import Any
 
 import typer
 
-OUTPUT_FILES = ("output", "picture")
+OUTPUT_FILES = ("output", "picture", "save_layers")
 OUTPUT_FOLDERS = ("out",)
-INPUTS = ("plan", "map_file", "trainings", "file")
+INPUTS = ("plan", "map_file", "trainings", "file", "layers")
 """Names of the parameters that are files and folders."""
 
 
