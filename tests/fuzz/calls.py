@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -80,6 +81,10 @@ def _world() -> GridWorld:
     return small_worlds.world_of(small_worlds.room_plan())
 
 
+def _box_with(**values: Any) -> FloorPlan:
+    return replace(small_plans.box(), **values)
+
+
 def _wall_in_box(**values: Any) -> FloorPlan:
     return small_plans.box((Wall(**values),))
 
@@ -127,7 +132,7 @@ def _fluctuating(**values: Any) -> object:
 
 
 CALLS: dict[str, tuple[Any, dict[str, str]]] = {
-    "FloorPlan": (small_plans.box, {
+    "FloorPlan": (_box_with, {
         "name": "'box'", "outline": "Polygon([(0, 0), (6, 0), (6, 4), (0, 4)])", "height_m": "3.0",
         "walls": f"small_plans.box().walls + ({WALL},)", "floor_material": "'concrete'",
         "ceiling_material": "'concrete'", "source": "(1, 1, 1.5)", "start": "(4.5, 2.5)",
