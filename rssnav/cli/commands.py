@@ -116,7 +116,7 @@ class Commands(TyperGroup):
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run a command line, on terminals of any encoding and into pipes that close early."""
-        with tolerant_streams():
+        with tolerant_streams(), warnings_as_lines():
             return super().main(*args, **kwargs)
 
     def make_context(self, *args: Any, **kwargs: Any) -> Any:
@@ -133,7 +133,7 @@ class Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command; turn anticipated errors into a message and an exit code."""
         try:
-            with _printable_usage(), warnings_as_lines():
+            with _printable_usage():
                 return super().invoke(ctx)
         except KeyboardInterrupt as interrupt:
             INTERRUPTS.reported()
