@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zlib
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -22,6 +23,13 @@ CHORD_M = 0.02
 
 _END = b"END-ISO-10303-21;"
 _TAIL_BYTES = 4096
+_HEAD_BYTES = 1 << 20
+_COMMENT = rb"(?>/\*.*?(?:\*/|\Z))"  # atomic and possessive: no backtracking in hostile headers
+_SPACE = rb"(?:\s|" + _COMMENT + rb")*+"
+_SCHEMA = re.compile(  # outside comments and strings
+    _COMMENT + rb"|'[^']*(?:'|\Z)|FILE_SCHEMA(?:" + rb"\(".join([_SPACE] * 3) + rb"')?",
+    re.DOTALL,
+)
 _PIECE_BYTES = 1 << 20
 
 Model = Any
@@ -59,6 +67,7 @@ def _parse(path: Path) -> Model:
     import ifcopenshell
 
     with path.open("rb") as file:
+        _check_schema(file.read(_HEAD_BYTES))
         file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
         if _END not in file.read():
             raise PlanError("the file is cut off: it does not end with END-ISO-10303-21")
@@ -70,6 +79,16 @@ def _parse(path: Path) -> Model:
         ) from error
     except Exception as error:  # the library raises errors of many types
         raise PlanError(f"not a readable IFC model: {error}") from error
+
+
+def _check_schema(head: bytes) -> None:
+    """Check that the header names a schema: ifcopenshell crashes where something else is there."""
+    found = (match[0] for match in _SCHEMA.finditer(head) if match[0].startswith(b"FILE_SCHEMA"))
+    if not next(found, b"").endswith(b"'"):
+        raise PlanError(
+            "not a readable IFC model: expected FILE_SCHEMA with a name in its header, such as "
+            "FILE_SCHEMA(('IFC4'))"
+        )
 
 
 def _check_bytes(size: int) -> None:

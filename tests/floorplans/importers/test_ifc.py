@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from contextlib import suppress
 from itertools import pairwise
 from math import asin, hypot, pi
@@ -375,6 +376,27 @@ def test_mutated_models_never_crash(tmp_path, house_file) -> None:
         path.write_bytes(bytes(changed) + end)
         with suppress(PlanError):
             import_plan(path)
+
+
+@pytest.mark.parametrize(
+    "schema",
+    [
+        "FILE_SCHEMA((1e308));", "FILE_SCHEMA();", "FILE_SCHEMA('IFC4');", "FILE_SCHEMA((#1));", "",
+        "FILE_SCHEMA((('IFC4')));", "FILE_SCHEMA((1));FILE_SCHEMA(('IFC4'));", "FILE_SCHEMA(/*",
+        "/*FILE_SCHEMA(('IFC4'))*/FILE_SCHEMA(($));", "FILE_SCHEMA" + "/**/" * 9999, "/*" * 99999,
+        "FILE_NAME('FILE_SCHEMA((''IFC4''))');FILE_SCHEMA((.T.));",
+    ],
+)  # fmt: skip
+def test_a_header_without_the_name_of_a_schema_is_refused(house_file, tmp_path, schema) -> None:
+    text, path = house_file.read_text(), tmp_path / "house.ifc"
+    path.write_text(re.sub(r"FILE_SCHEMA.*", lambda _: schema, text))
+    assert "expected FILE_SCHEMA with a name" in message_of(path)
+
+
+def test_comments_around_the_name_of_a_schema_are_read(house_file, tmp_path) -> None:
+    text, path = house_file.read_text(), tmp_path / "house.ifc"
+    path.write_text(text.replace("FILE_SCHEMA((", "FILE_SCHEMA /* ' */ (/**/("))
+    assert import_plan(path).plan == import_plan(house_file).plan
 
 
 def zipped(folder, *files):
