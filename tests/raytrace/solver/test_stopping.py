@@ -46,7 +46,7 @@ def trace(request: pytest.FixtureRequest) -> Callable[..., Any]:
 
 
 @pytest.mark.parametrize("after_s", [0.0, 0.3, 1.5])
-@pytest.mark.parametrize("config", [ENDLESS, TraceConfig(12, 1)])
+@pytest.mark.parametrize("config", [ENDLESS, TraceConfig(18, 1)])
 def test_a_stopped_trace_ends_within_a_second(
     trace: Callable[..., Any], config: TraceConfig, after_s: float
 ) -> None:
