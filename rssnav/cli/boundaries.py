@@ -12,9 +12,9 @@ from typing import Any
 
 import typer
 
-OUTPUT_FILES = ("output", "picture", "save_layers")
+OUTPUT_FILES = ("output", "picture", "report", "save_layers")
 OUTPUT_FOLDERS = ("out",)
-INPUTS = ("plan", "map_file", "trainings", "file", "layers")
+INPUTS = ("plan", "map_file", "trainings", "file", "layers", "survey", "transmitters")
 """Names of the parameters that are files and folders."""
 
 

@@ -55,6 +55,14 @@ COMMANDS = {
         ("paths",),
         "Trace all paths from a plan's source to a receiver and print the strongest.",
     ),
+    "validate": Entry(
+        ("validate",),
+        "Compare traced RSS with a survey, beside the usual models, on readings held out.",
+    ),
+    "example": Entry(
+        ("example",),
+        "Write the files of a measured flat: its plan, a survey, and the licence to use them.",
+    ),
     "train": Entry(
         ("train",),
         "Train an agent to fly from a plan's start to its source, in many realisations.",

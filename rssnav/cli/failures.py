@@ -30,8 +30,9 @@ def is_anticipated(error: Exception) -> bool:
     from floorplans import PlanError
     from raytrace import MapFileError, MemoryLimitError, SceneError
     from rssnav import ResultFileError, WorldError
+    from rssnav.measurements.survey import SurveyError
 
-    unusable = (PlanError, SceneError, MapFileError, WorldError, ResultFileError)
+    unusable = (PlanError, SceneError, MapFileError, WorldError, ResultFileError, SurveyError)
     anticipated = (*unusable, MemoryLimitError, OSError)
     return isinstance(error, anticipated) and not isinstance(error, BrokenPipeError)
 

@@ -46,6 +46,8 @@ RIGHT: dict[str, dict[str, str]] = {
     "map": {"plan": PLAN, "--output": "out.h5", **QUICK},
     "maps": {"--out": "out"},
     "paths": {"plan": PLAN, "--to": "2,2,1.5", **QUICK},
+    "validate": {"plan": PLAN, "survey": "survey.csv", "--transmitters": "transmitters.csv"},
+    "example": {},
     "train": {"plan": PLAN, "--map": MAP, "--runs": "1", "--episodes": "2", "--agent": "location"},
     "fly": {"plan": PLAN, "trainings": "result.h5", "--map": MAP, "--output": "out.gif"},
     "explore": {"plan": PLAN, "--port": "0"},
@@ -154,6 +156,8 @@ def _files() -> dict[str, bytes]:
         MAP: samples.map_file(),
         "result.h5": samples.result_file("rss"),
         "room.geojson": json_text(samples.geojson()),
+        "survey.csv": samples.survey_text().encode(),
+        "transmitters.csv": samples.transmitters_text().encode(),
     }
 
 

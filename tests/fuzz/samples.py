@@ -184,6 +184,22 @@ def antenna() -> bytes:
     return text.getvalue().encode()
 
 
+def survey_text() -> str:
+    """Readings of one transmitter in the room of `plan_text`, with every column."""
+    rows = [
+        f"A,{x / 4},{y / 4},1.5,{-40 - 2 * x - y},5,1.5,2.4e9,phone,{int(x == y)}"
+        for x in range(4, 10, 2)
+        for y in range(4, 12, 2)
+    ]
+    heading = "tx,x,y,z,rss_dbm,n,std_db,frequency_hz,device,below_sensitivity"
+    return "\n".join([heading, *rows, ""])
+
+
+def transmitters_text() -> str:
+    """Return the transmitter of `survey_text`."""
+    return "tx,x,y,z,power_dbm,frequency_hz\nA,1.2,1.1,1.5,10,2.4e9\n"
+
+
 def _written(name: str, write: Any) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / name

@@ -30,6 +30,9 @@ from raytrace import (
     SceneError,
 )
 from rssnav import ResultFileError, TrainingResult
+from rssnav.measurements.survey import SurveyError, SurveyTransmitter
+from rssnav.measurements.survey_csv import read_survey
+from rssnav.measurements.validation import validate
 
 Cases = Callable[[], st.SearchStrategy[bytes]]
 
@@ -155,6 +158,17 @@ def _texts(sample: Callable[[], bytes]) -> Cases:
     return lambda: mutated_lines(sample()) | mutated_bytes(sample())
 
 
+def _run_survey(path: Path) -> None:
+    """Read a survey of the small plan, and compare it with predictions."""
+    plan = floorplans.loads(samples.plan_text())
+    source = SurveyTransmitter("A", (1.2, 1.1, 1.5))
+    survey = read_survey(path, plan, [source])
+    assert np.isfinite(survey.points).all()
+    assert np.isfinite(survey.rss_dbm).all()
+    for row in validate(plan, survey, -20.0 * np.log10(survey.distance_m + 1.0)).rows:
+        assert row.space is None or np.isfinite(row.space.sigma_db)
+
+
 def _results() -> st.SearchStrategy[bytes]:
     return st.sampled_from(("rss", "location")).flatmap(
         lambda agent: damaged_hdf5(samples.result_file(agent))
@@ -175,6 +189,10 @@ TARGETS = {
     "ros": Target(_ros_maps, _run_ros_map, (PlanError,), ".zip"),
     "antenna": Target(
         _texts(samples.antenna), PatternTable.from_csv, (AntennaError,), ".csv", by_lines=True
+    ),
+    "survey": Target(
+        _texts(lambda: samples.survey_text().encode()), _run_survey, (SurveyError,), ".csv",
+        by_lines=True
     ),
     "options": Target(commands.cases, commands.run, (), ".txt", by_lines=True),
     "library": Target(

@@ -30,6 +30,8 @@ COMMANDS = (
     ("map",),
     ("maps",),
     ("paths",),
+    ("validate",),
+    ("example",),
     ("train",),
     ("explore",),
     ("experiments",),

@@ -1,0 +1,147 @@
+"""``rssnav validate``: traced RSS compared with a survey."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import typer
+
+import floorplans
+from raytrace import TraceConfig
+from rssnav.cli.console import print_json, print_pairs, print_table, say, stage_progress
+from rssnav.cli.options import (
+    Diffractions,
+    Edition,
+    Json,
+    MaxMemory,
+    Plan,
+    Reflections,
+    Threads,
+    Transmissions,
+    check_suffix,
+    examples,
+    in_bytes,
+)
+from rssnav.cli.survey_options import (
+    Antennas,
+    Offset,
+    Report,
+    Square,
+    SurveyFile,
+    SurveyFrequency,
+    TransmitterFile,
+    antenna_of,
+    load_survey,
+)
+from rssnav.kernel_cache import tracer_cache
+from rssnav.maps import FREQUENCY_HZ
+from rssnav.measurements.hold_out import SQUARE_M
+from rssnav.measurements.pages import cautions_of, save_validation_page, sentence_of
+from rssnav.measurements.survey import Survey
+from rssnav.measurements.traced import TraceSettings, traced_dbm
+from rssnav.measurements.validation import Validation, validate
+from rssnav.scenes import scene_of
+
+EXAMPLE = (
+    "measured-flat/flat.toml measured-flat/survey.csv --transmitters measured-flat/transmitters.csv"
+)
+
+
+def add_to(parent: typer.Typer) -> None:
+    """Add the command ``validate``."""
+    parent.command(
+        "validate",
+        epilog=examples(
+            f"rssnav validate {EXAMPLE}", f"rssnav validate {EXAMPLE} --report validation.html"
+        ),
+    )(validate_plan)
+
+
+def validate_plan(
+    plan: Plan,
+    survey: SurveyFile,
+    transmitters: TransmitterFile = None,
+    offset: Offset = "one",
+    square: Square = SQUARE_M,
+    frequency: SurveyFrequency = None,
+    antenna: Antennas = "isotropic",
+    reflections: Reflections = 3,
+    diffractions: Diffractions = 1,
+    transmissions: Transmissions = 3,
+    report: Report = None,
+    max_memory: MaxMemory = None,
+    edition: Edition = None,
+    threads: Threads = None,
+    as_json: Json = False,
+) -> None:
+    """Compare traced RSS with a survey, beside the usual models, on readings held out.
+
+    By space, half of a chequerboard's squares is predicted with offsets fitted to the other half;
+    by transmitter, each is predicted with offsets fitted to the others.
+    """
+    check_suffix(report, (".html",), "--report")
+    loaded = floorplans.load(plan)
+    read = load_survey(loaded, survey, transmitters)
+    settings = TraceSettings(
+        TraceConfig(reflections, diffractions, transmissions),
+        FREQUENCY_HZ if read.frequency_hz is None else read.frequency_hz,
+        antenna_of(antenna),
+        antenna_of(antenna),
+        threads,
+        in_bytes(max_memory),
+    )
+    if frequency is not None:
+        settings = _with_frequency(settings, read, frequency * 1e9)
+    with stage_progress(compiles=not tracer_cache().n_compiled) as show:
+        traced = traced_dbm(
+            scene_of(loaded, edition),
+            read,
+            settings,
+            lambda done, total: show("transmitters", done, total),
+        )
+    found = validate(loaded, read, traced, offsets=offset, square_m=square)
+    if report is not None:
+        save_validation_page(report, loaded, read, found, settings)
+    if as_json:
+        print_json({"plan": plan, "readings": len(read), **found.summary()})
+    else:
+        _print(read, found)
+
+
+def _with_frequency(settings: TraceSettings, survey: Survey, frequency_hz: float) -> TraceSettings:
+    if survey.frequency_hz not in (None, frequency_hz):
+        raise typer.BadParameter(
+            f"the survey was made at {survey.frequency_hz:g} Hz; leave the option out.",
+            param_hint="--frequency",
+        )
+    return replace(settings, frequency_hz=frequency_hz)
+
+
+def _print(survey: Survey, found: Validation) -> None:
+    print_table(
+        ("model", ">sigma [dB]", ">median [dB]", ">sigma, new transmitter [dB]", ">slope"),
+        [
+            (
+                row.name,
+                _decibels(row.space and row.space.sigma_db),
+                _decibels(row.space and row.space.median_db),
+                _decibels(row.transmitter and row.transmitter.sigma_db),
+                f"{row.slope:.2f}",
+            )
+            for row in found.rows
+        ],
+    )
+    floor = "too few neighbours"
+    if found.floor is not None:
+        floor = (
+            f"{found.floor.sigma_db:.2f} dB, from {found.floor.n_pairs} pairs of neighbours "
+            f"{found.floor.distance_m:.2f} m apart"
+        )
+    print_pairs([("readings", len(survey)), ("places", survey.n_places), ("floor", floor)])
+    say(sentence_of(survey, found))
+    for line in cautions_of(found):
+        say(line)
+
+
+def _decibels(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"

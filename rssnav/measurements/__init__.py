@@ -1,0 +1,1 @@
+"""Measured RSS: surveys, the tracer validated with them, and materials calibrated to them."""
