@@ -37,6 +37,10 @@ class Format:
         The reader; its module is imported on first use.
     looks_right : callable
         Whether the first bytes of a file match this format.
+    text_suffixes : tuple of str
+        Of files that are plain text and complete by themselves.
+    entity : bytes
+        Regular expression of what each entity in such a text begins with.
     """
 
     title: str
@@ -44,6 +48,8 @@ class Format:
     module: str
     function: str
     looks_right: Callable[[bytes], bool]
+    text_suffixes: tuple[str, ...] = ()
+    entity: bytes = b""
 
     def reader(self) -> Reader:
         """Load the reader."""
@@ -68,16 +74,22 @@ def _is_ifc(head: bytes) -> bool:
 
 
 FORMATS = (
-    Format("DXF drawing", (".dxf",), "dxf.reader", "read_dxf", _is_dxf),
+    Format(
+        "DXF drawing", (".dxf",), "dxf.reader", "read_dxf", _is_dxf,
+        (".dxf",), rb"(?m)^\s*0\s*$",
+    ),
     Format(
         "GeoJSON or IMDF", (".geojson", ".json", ".zip", ".imdf"), "geojson.reader", "read_geojson",
-        _is_json,
+        _is_json, (".geojson", ".json"), rb'"coordinates"',
     ),
     Format(
         "ROS map_server map", (".yaml", ".yml", ".pgm", ".png"), "ros_map.reader", "read_ros_map",
         _is_ros_map,
     ),
-    Format("IFC model", (".ifc",), "ifc.reader", "read_ifc", _is_ifc),
+    Format(
+        "IFC model", (".ifc",), "ifc.reader", "read_ifc", _is_ifc,
+        (".ifc",), rb"(?m)^\s*#\d+\s*=",
+    ),
     Format(
         "zipped IFC model", (".ifczip",), "ifc.reader", "read_ifc", lambda h: h.startswith(_ZIP)
     ),

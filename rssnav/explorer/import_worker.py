@@ -13,7 +13,7 @@ from pathlib import Path
 
 import floorplans
 from floorplans import PlanError
-from floorplans.importers import import_plan
+from floorplans.importers import FORMATS, import_plan
 from rssnav.explorer.limits import Limits
 from rssnav.explorer.plan_size import PlanSize
 from rssnav.messages import describe
@@ -22,11 +22,9 @@ TOML = ".toml"
 RESULT = "result"
 """Name of the file that the plan's TOML text is written to."""
 ENTITY_MARKS = {
-    ".dxf": re.compile(rb"^\s*0\s*$", re.MULTILINE),
-    ".geojson": re.compile(rb'"coordinates"'),
-    ".ifc": re.compile(rb"^\s*#\d+\s*=", re.MULTILINE),
+    suffix: re.compile(kind.entity) for kind in FORMATS for suffix in kind.text_suffixes
 }
-"""What begins each entity in a file of another program."""
+"""What begins each entity in a file of another program, by the file's suffix."""
 
 
 def main(file: str, limits: str) -> int:

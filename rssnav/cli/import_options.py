@@ -1,0 +1,135 @@
+"""The options of ``rssnav plan import``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from floorplans.importers import FORMATS, read_layers
+
+_KNOWN = "; ".join(f"{kind.title} ({', '.join(kind.suffixes)})" for kind in FORMATS)
+
+ImportedFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="FILE", help=f"A file of another program: {_KNOWN}.", show_default=False
+    ),
+]
+Output = Annotated[
+    Path, typer.Option("-o", "--output", metavar="FILE", help="The .toml file to write.")
+]
+Name = Annotated[str | None, typer.Option(help="Name of the plan.", show_default="the file's")]
+CeilingHeight = Annotated[
+    float | None,
+    typer.Option(
+        metavar="M",
+        min=0.1,
+        max=1000.0,
+        help="From floor to ceiling.",
+        show_default="the file's, or 3",
+    ),
+]
+WallThickness = Annotated[
+    float | None,
+    typer.Option(
+        metavar="M",
+        min=1e-4,
+        max=1000.0,
+        help="Of walls whose thickness the file does not state.",
+        show_default="0.1",
+    ),
+]
+WallMaterial = Annotated[
+    str | None,
+    typer.Option(
+        metavar="MATERIAL",
+        help="Of walls whose material the file does not state.",
+        show_default="plasterboard, concrete where thick",
+    ),
+]
+SlabMaterial = Annotated[
+    str | None, typer.Option(metavar="MATERIAL", show_default="the file's, or concrete")
+]
+Source = Annotated[
+    str | None,
+    typer.Option(metavar="X,Y,Z", help="Transmitter in the plan.", show_default="away from walls"),
+]
+Start = Annotated[
+    str | None,
+    typer.Option(metavar="X,Y", help="Start of the search.", show_default="far from the source"),
+]
+Unit = Annotated[
+    str | None, typer.Option(help="Of the file: mm, cm, m, in, ft ...", show_default="the file's")
+]
+Level = Annotated[str | None, typer.Option(help="Which storey, where the file holds several.")]
+Scale = Annotated[
+    float | None,
+    typer.Option(metavar="M", min=1e-4, max=1000.0, help="Side of a pixel, for pictures."),
+]
+WallTolerance = Annotated[
+    float | None,
+    typer.Option(
+        metavar="M",
+        min=1e-9,
+        max=1000.0,
+        help="How far walls may be moved to meet.",
+        show_default="the format's",
+    ),
+]
+Layer = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=KIND[:MATERIAL]",
+        help="What a layer or type is: wall, door, window or ignore; NAME may hold * and ?.",
+    ),
+]
+Layers = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Meanings of layers that --save-layers wrote.")
+]
+SaveLayers = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Write --layers and --layer to this .toml file."),
+]
+Replace = Annotated[bool, typer.Option("--force", help="Replace whatever is at FILE.")]
+
+
+def start_of(text: str | None) -> tuple[float, float] | None:
+    """Read --start."""
+    if text is None:
+        return None
+    x, y = _numbers(text, "xy", "--start")
+    return (x, y)
+
+
+def source_of(text: str | None) -> tuple[float, float, float] | None:
+    """Read --source."""
+    if text is None:
+        return None
+    x, y, z = _numbers(text, "xyz", "--source")
+    return (x, y, z)
+
+
+def _numbers(text: str, names: str, option: str) -> tuple[float, ...]:
+    """Read "1.5,2,1" as one number for each letter of `names`."""
+    try:
+        numbers = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) != len(names):
+        shape = ",".join(names).upper()
+        raise typer.BadParameter(f"{text!r} is not {shape} in metres.", param_hint=option)
+    return numbers
+
+
+def layers_of(texts: list[str] | None, file: Path | None) -> dict[str, str]:
+    """Meanings of --layer, then those of --layers: the first that matches counts."""
+    layers: dict[str, str] = {}
+    for text in texts or ():
+        name, equals, meaning = text.rpartition("=")
+        if not equals or not name:
+            raise typer.BadParameter(
+                f"{text!r} is not NAME=KIND or NAME=KIND:MATERIAL.", param_hint="--layer"
+            )
+        layers[name] = meaning
+    saved = {} if file is None else read_layers(file)
+    return layers | {name: saved[name] for name in saved if name not in layers}
