@@ -102,5 +102,9 @@ class PlanFile:
         """Replace the index of a straight wall by that of the polyline it belongs to."""
         if len(place) < 2 or place[0] != "walls":
             return place
-        tables = [table for table, count in enumerate(self.piece_counts) for _ in range(count)]
-        return ("walls", tables[int(place[1])], *place[2:])
+        return ("walls", self._tables[int(place[1])], *place[2:])
+
+    @cached_property
+    def _tables(self) -> list[int]:
+        """Index of the polyline that each straight wall belongs to."""
+        return [table for table, count in enumerate(self.piece_counts) for _ in range(count)]

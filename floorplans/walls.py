@@ -135,11 +135,15 @@ def panels(wall: Wall) -> tuple[Panel, ...]:
 
 def _wall_panels(wall: Wall) -> Iterator[Panel]:
     sides = {min(s, wall.length_m) for o in wall.openings for s in (o.offset_m, o.end_m)}
+    ahead = sorted(wall.openings, key=lambda o: o.offset_m, reverse=True)
+    here: list[Opening] = []
     for s_min, s_max in pairwise(sorted(sides | {0.0, wall.length_m})):
         if s_max - s_min < TOLERANCE_M:
             continue
         middle = (s_min + s_max) / 2
-        here = [o for o in wall.openings if o.offset_m < middle < o.end_m]
+        while ahead and ahead[-1].offset_m < middle:
+            here.append(ahead.pop())
+        here = [o for o in here if o.end_m > middle]
         for z_min, z_max in complement(((o.sill_m, o.head_m) for o in here), wall.height_m):
             yield Panel(s_min, s_max, z_min, z_max, wall.material, wall.thickness_m)
 
@@ -184,6 +188,27 @@ def centre_lines(walls: Sequence[Wall]) -> NDArray[np.object_]:
     """Centre lines as shapely lines, (n,)."""
     ends = np.array([(wall.start, wall.end) for wall in walls], dtype=np.float64)
     return np.array(shapely.linestrings(ends.reshape(-1, 2, 2)), dtype=np.object_)
+
+
+def solid_heights(walls: Sequence[Wall], point: Point) -> list[Interval]:
+    """Heights [m] between which walls and fillings are solid at a point of the plan view.
+
+    Returns
+    -------
+    list of (float, float)
+        Disjoint intervals of z, in ascending order, touching ones merged.
+    """
+    near = shapely.dwithin(centre_lines(walls), shapely.points(point), TOLERANCE_M)
+    spans: list[Interval] = []
+    for wall in (walls[k] for k in np.flatnonzero(near)):
+        along = np.subtract(wall.end, wall.start) / wall.length_m
+        s = float(np.subtract(point, wall.start) @ along)
+        spans += [
+            (p.z_min, p.z_max)
+            for p in panels(wall)
+            if p.s_min - TOLERANCE_M < s < p.s_max + TOLERANCE_M
+        ]
+    return _union(spans)
 
 
 def closed_intervals(wall: Wall) -> list[Interval]:

@@ -95,7 +95,7 @@ def shortest_path(
     state, action = np.nonzero(world.action_mask)
     length_m = world.step_length_m[action]
     # Fewer than n_states steps sum to less than 1/4 of a step: this only breaks ties.
-    tie_break = length_m / (length_m.max() * 4.0 * world.n_states)
+    tie_break = length_m / (length_m.max(initial=0.0) * 4.0 * world.n_states)
     weight = length_m if cost == "metres" else 1.0 + tie_break
     graph = csr_array(
         (weight, (state, world.next_state[state, action])), shape=(world.n_states,) * 2

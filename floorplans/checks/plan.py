@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.errors import ShapelyError
-from shapely.geometry import LineString, MultiLineString, Point, Polygon
+from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.strtree import STRtree
 
@@ -30,7 +30,14 @@ from floorplans.values import (
     check_number,
     type_faults,
 )
-from floorplans.walls import TOLERANCE_M, Wall, centre_lines, closed_intervals
+from floorplans.walls import (
+    TOLERANCE_M,
+    Wall,
+    centre_lines,
+    closed_intervals,
+    complement,
+    solid_heights,
+)
 
 MAX_FAULTS = 1000
 """No more faults than this are listed."""
@@ -206,11 +213,12 @@ def _open_edges(plan: UncheckedPlan) -> Iterator[PlanError]:
     full = [wall for wall in plan.walls if wall.height_m > plan.height_m - TOLERANCE_M]
     near = np.flatnonzero(shapely.dwithin(centre_lines(full), edge, 2 * TOLERANCE_M))
     closed = [
-        LineString([full[k].point_at(low), full[k].point_at(high)])
+        (full[k].point_at(low), full[k].point_at(high))
         for k in near
         for low, high in closed_intervals(full[k])
     ]
-    cover = shapely.union_all(closed).buffer(2 * TOLERANCE_M)
+    lines = shapely.linestrings(np.array(closed).reshape(-1, 2, 2))
+    cover = shapely.union_all(shapely.buffer(lines, 2 * TOLERANCE_M))
     for ring in (plan.outline.exterior, *plan.outline.interiors):
         for gap in _lines(ring.difference(cover)):
             if gap.length > 10 * TOLERANCE_M:
@@ -235,7 +243,7 @@ def _check_source(plan: UncheckedPlan) -> None:
             at=(x, y),
         )
     _check_inside(plan, (x, y), "source", plan.source)
-    if _in_wall(plan, (x, y), z):
+    if any(low <= z <= high for low, high in solid_heights(plan.walls, (x, y))):
         raise PlanError(
             "the source is in a wall; move it into a room", place, plan.source, at=(x, y)
         )
@@ -244,7 +252,7 @@ def _check_source(plan: UncheckedPlan) -> None:
 def _check_start(plan: UncheckedPlan) -> None:
     """Raise for a start outside, or inside a wall at every height; a doorway is allowed."""
     _check_inside(plan, plan.start, "start", plan.start)
-    if all(_in_wall(plan, plan.start, height_m) for height_m in plan.layer_heights()):
+    if not any(complement(solid_heights(plan.walls, plan.start), plan.height_m)):
         raise PlanError(
             "the start is in a wall; move it into a room", ("start",), plan.start, at=plan.start
         )
@@ -260,11 +268,6 @@ def _check_inside(plan: UncheckedPlan, point: tuple[float, float], key: str, val
             value,
             at=point,
         )
-
-
-def _in_wall(plan: UncheckedPlan, point: tuple[float, float], height_m: float) -> bool:
-    walls = MultiLineString(list(plan.solid_segments(height_m)))
-    return Point(point).distance(walls) < TOLERANCE_M
 
 
 def _lines(geometry: BaseGeometry) -> list[LineString]:

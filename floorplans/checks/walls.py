@@ -1,6 +1,8 @@
 """Checks of one wall and its openings; the first problem found raises `PlanError`."""
 
-from itertools import combinations
+from bisect import bisect_left
+from collections.abc import Sequence
+from heapq import heappop, heappush
 from typing import get_args
 
 from floorplans.checks.materials import check_slab
@@ -79,15 +81,43 @@ def check_openings(wall: Wall, own: Own, place: Place) -> None:
         _check_extent_along(opening, wall.length_m, here)
         _check_extent_upwards(opening, wall.height_m, here)
         _check_filling(opening, wall.thickness_m, own, here)
-    for first, second in combinations(range(len(openings)), 2):
-        if openings[first].overlaps(openings[second]):
-            o = openings[first]
-            raise PlanError(
-                f"the opening overlaps openings[{first}], which reaches from {o.offset_m:g} m to "
-                f"{o.end_m:g} m along the wall and from {o.sill_m:g} m to {o.head_m:g} m above "
-                "the floor; move or shrink one of them",
-                (*place, "openings", second),
-            )
+    if (pair := overlapping_pair(openings)) is not None:
+        first, second = pair
+        o = openings[first]
+        raise PlanError(
+            f"the opening overlaps openings[{first}], which reaches from {o.offset_m:g} m to "
+            f"{o.end_m:g} m along the wall and from {o.sill_m:g} m to {o.head_m:g} m above "
+            "the floor; move or shrink one of them",
+            (*place, "openings", second),
+        )
+
+
+def overlapping_pair(openings: Sequence[Opening]) -> tuple[int, int] | None:
+    """Find two openings of a wall that overlap.
+
+    A sweep along the wall: the openings at a place do not overlap, so they are sorted by height,
+    and a new one can overlap only the next below and above it. Takes n log n comparisons.
+
+    Returns
+    -------
+    (int, int) or None
+        Their indices, ascending.
+    """
+    wide = [k for k, o in enumerate(openings) if min(o.width_m, o.head_m - o.sill_m) > TOLERANCE_M]
+    here: list[tuple[float, int]] = []  # (sill_m, index), ascending
+    ends: list[tuple[float, int]] = []  # (end_m, index), a heap
+    for k in sorted(wide, key=lambda k: openings[k].offset_m):
+        new = openings[k]
+        while ends and ends[0][0] <= new.offset_m + TOLERANCE_M:
+            _, past = heappop(ends)
+            del here[bisect_left(here, (openings[past].sill_m, past))]
+        at = bisect_left(here, (new.sill_m, k))
+        for _, other in here[max(at - 1, 0) : at + 1]:
+            if new.overlaps(openings[other]):
+                return min(k, other), max(k, other)
+        here.insert(at, (new.sill_m, k))
+        heappush(ends, (new.end_m, k))
+    return None
 
 
 def opening_kind(name: str, place: Place) -> OpeningKind:

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString, MultiLineString, Point, Polygon
+from shapely.geometry import MultiLineString, Point, Polygon
 
 from floorplans.errors import format_place
 from floorplans.unchecked import PlanFile, UncheckedPlan
@@ -86,9 +86,10 @@ def _walls_that_almost_meet(walls: _Walls) -> Iterator[Finding]:
     """Yield free wall ends that stop just short of another wall, or within its thickness."""
     tree = shapely.STRtree(walls.lines)
     reach = np.array([wall.thickness_m / 2 + GAP_M for wall in walls.walls])
+    reach_m = float(reach.max(initial=0.0))
     for index, wall in enumerate(walls.walls):
         for end in (wall.start, wall.end):
-            near = tree.query(Point(end), predicate="dwithin", distance=float(reach.max()))
+            near = tree.query(Point(end), predicate="dwithin", distance=reach_m)
             others = near[near != index]
             gaps = shapely.distance(walls.lines[others], Point(end))
             meant = gaps <= reach[others]
@@ -146,20 +147,23 @@ def _short_walls(walls: _Walls) -> Iterator[Finding]:
 def _walls_in_openings(walls: _Walls) -> Iterator[Finding]:
     """Yield ends of walls that lie in an opening of another wall."""
     ends = [end for wall in walls.walls for end in (wall.start, wall.end)]
-    tree = shapely.STRtree(np.array([Point(end) for end in ends], dtype=np.object_))
-    for name, wall in zip(walls.names, walls.walls, strict=True):
-        for opening in wall.openings:
-            near, far = wall.point_at(opening.offset_m), wall.point_at(opening.end_m)
-            line = LineString([near, far])
-            for k in tree.query(line, predicate="dwithin", distance=TOLERANCE_M):
-                if min(dist(ends[k], near), dist(ends[k], far)) > _JAMB_M:
-                    yield Finding(
-                        "warning",
-                        "wall in opening",
-                        f"{walls.names[int(k) // 2]} ends in a {opening.kind} of {name}: move one "
-                        "of them",
-                        ends[k],
-                    )
+    openings = [
+        (name, opening.kind, wall.point_at(opening.offset_m), wall.point_at(opening.end_m))
+        for name, wall in zip(walls.names, walls.walls, strict=True)
+        for opening in wall.openings
+    ]
+    sides = np.array([(near, far) for *_, near, far in openings], dtype=np.float64)
+    lines = shapely.linestrings(sides.reshape(-1, 2, 2))
+    tree = shapely.STRtree(np.array(shapely.points(np.reshape(ends, (-1, 2)))))
+    for o, k in tree.query(lines, predicate="dwithin", distance=TOLERANCE_M).T.tolist():
+        name, kind, near, far = openings[o]
+        if min(dist(ends[k], near), dist(ends[k], far)) > _JAMB_M:
+            yield Finding(
+                "warning",
+                "wall in opening",
+                f"{walls.names[k // 2]} ends in a {kind} of {name}: move one of them",
+                ends[k],
+            )
 
 
 def _slivers_and_closed_rooms(plan: UncheckedPlan) -> Iterator[Finding]:

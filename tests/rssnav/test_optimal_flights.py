@@ -55,6 +55,12 @@ def test_fewest_steps_equal_a_breadth_first_search(room, speed):
     assert shortest.steps >= fewest.steps
 
 
+def test_flight_in_a_building_of_one_cell_has_no_step():
+    world = world_of(SmallPlan((1.0, 1.0), (0.3, 0.5, 1.5), (0.5, 0.5)))
+    path = shortest_path(world, world.distance_m < 2.0)
+    assert (path.steps, path.length_m, path.reached) == (0, 0.0, True)
+
+
 def test_no_goal_within_reach_is_an_error(room_world):
     with pytest.raises(ValueError, match="no terminal state can be reached"):
         shortest_path(room_world, np.zeros(room_world.n_states, dtype=bool))

@@ -93,7 +93,7 @@ def test_scalars_of_any_width_are_numbers(number: type) -> None:
         ),
         (
             {"walls": (replace(SCREEN, openings=(DOOR,) * (MAX_OPENINGS + 1)),)},
-            "walls[4].openings: a list of 501; expected at most 500",
+            "walls[4].openings: a list of 5001; expected at most 5000",
         ),
         (
             {"walls": (replace(SCREEN, openings=(replace(DOOR, kind="gate"),)),)},
