@@ -29,7 +29,7 @@ from raytrace.solver.path_class import Evaluation
 from raytrace.solver.setup import Tracing, prepare
 from raytrace.solver.workers import Stop, Workers
 
-TRACER_VERSION = 4
+TRACER_VERSION = 5
 """Grows whenever the same scene would give another map."""
 
 

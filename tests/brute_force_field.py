@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from brute_force import DIFFRACTION, REFLECTION, Edge, Facets, Found
+from brute_force import DIFFRACTION, REFLECTION, TRANSMISSION, Found
+from brute_force_facets import Edge, Facets, Mask
 from numpy.typing import NDArray
 from scipy.special import fresnel
 
@@ -19,7 +20,6 @@ from raytrace.radio.materials import MATERIALS
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 UP = np.array([0.0, 0.0, 1.0])
-TRANSMISSION = 3
 CONDUCTOR = np.diag([-1.0, 1.0])
 """Reflection dyad of a wedge's face that conducts perfectly."""
 
@@ -72,6 +72,7 @@ def wedge(
     sin_beta: Floats,
     k_distance: Floats,
     faces: tuple[Complexes, Complexes],
+    through: Complexes | None = None,
 ) -> Complexes:
     """Dyads (m, 2, 2) times sqrt(k), soft before hard: Kouyoumjian and Pathak, eqs. 25-33.
 
@@ -88,6 +89,8 @@ def wedge(
     faces
         Reflection dyads (m, 2, 2) of the o-face and of the n-face, `CONDUCTOR` for a perfect
         conductor.
+    through
+        Transmission dyad (m, 2, 2) of a sheet, whose shadow holds what it lets through.
     """
     phi_in, phi = angles
     terms = []
@@ -99,7 +102,8 @@ def wedge(
             terms.append(cotangent * transition(k_distance * a))
     direct, at_n, at_o = (t[:, None, None] for t in (terms[0] + terms[1], terms[2], terms[3]))
     size = -np.exp(-0.25j * np.pi) / (2.0 * n * np.sqrt(2.0 * np.pi) * sin_beta)
-    return size[:, None, None] * (direct * np.eye(2) + faces[1] * at_n + faces[0] * at_o)
+    lost = np.eye(2) if through is None else np.eye(2) - through
+    return size[:, None, None] * (direct * lost + faces[1] * at_n + faces[0] * at_o)
 
 
 def unit(vectors: Floats) -> Floats:
@@ -114,17 +118,25 @@ def dot(a: NDArray, b: NDArray) -> NDArray:
 
 @dataclass(frozen=True)
 class Radio:
-    """Slabs by number, transmitter and the receivers' antenna."""
+    """Slabs by number, transmitter, the receivers' antenna, most transmissions of a path."""
 
     slabs: Sequence[tuple[str, float]]
     source: Transmitter
     receive: Antenna
+    max_transmissions: int = 0
 
     def reflect(self, number: int, cos_i: Floats) -> Slab:
         """Coefficients of a slab by its number."""
         name, thickness_m = self.slabs[number]
         permittivity = MATERIALS[name].complex_permittivity(self.source.frequency_hz)
         return slab(permittivity, thickness_m, self.source.wavelength_m, cos_i)
+
+    def transmit(self, number: int, cos_i: Floats) -> tuple[Complexes, Complexes]:
+        """Return T_te and T_tm of a slab, relative to air across the same thickness."""
+        c = self.reflect(number, cos_i)
+        wave = 2.0 * np.pi / self.source.wavelength_m
+        missing = np.exp(1j * wave * self.slabs[number][1] * cos_i)
+        return missing * c.t_te, missing * c.t_tm
 
 
 def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
@@ -135,6 +147,7 @@ def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
     first = unit(rays[:, 0])
     field = pattern(radio.source.antenna, first)
     spread = 1.0 / lengths.sum(axis=1)
+    may_pass = (found.kinds == TRANSMISSION).sum(axis=1) < radio.max_transmissions
     for k in range(most):
         rows = np.flatnonzero(found.kinds[:, k] == REFLECTION)
         field[rows] = reflected(facets, radio, found.vertices[rows, k : k + 3], field[rows])
@@ -145,7 +158,9 @@ def path_gains(facets: Facets, found: Found, radio: Radio) -> Complexes:
         behind = lengths[rows, k + 1 :].sum(axis=1)
         spread[rows] = 1.0 / np.sqrt(before * behind * (before + behind))
         where = found.vertices[rows, k : k + 3]
-        field[rows] = diffracted(facets, radio, where, (before, behind), field[rows])
+        field[rows] = diffracted(
+            facets, radio, where, (before, behind), field[rows], may_pass[rows]
+        )
     last = np.count_nonzero(found.kinds, axis=1)
     arriving = unit(rays[np.arange(n), last])
     received = dot(field, pattern(radio.receive, -arriving))
@@ -177,12 +192,10 @@ def transmitted(facets: Facets, radio: Radio, points: Floats, field: Complexes) 
     for number in np.unique(facets.slab[facet]):
         i = facets.slab[facet] == number
         cos_i = np.abs(dot(ray[i], normal[i]))
-        c = radio.reflect(number, cos_i)
-        wave = 2.0 * np.pi / radio.source.wavelength_m
-        missing = np.exp(1j * wave * radio.slabs[number][1] * cos_i)[:, None]
+        t_te, t_tm = radio.transmit(number, cos_i)
         across = unit(np.cross(ray[i], normal[i]))
         te = dot(field[i], across)[:, None] * across
-        result[i] = missing * (c.t_te[:, None] * te + c.t_tm[:, None] * (field[i] - te))
+        result[i] = t_te[:, None] * te + t_tm[:, None] * (field[i] - te)
     return result
 
 
@@ -208,8 +221,12 @@ def diffracted(
     points: Floats,
     distances: tuple[Floats, Floats],
     field: Complexes,
+    may_pass: Mask,
 ) -> Complexes:
-    """Field behind an edge at the middle one of three points, without its spreading."""
+    """Field behind an edge at the middle one of three points, without its spreading.
+
+    The shadow of a sheet holds the transmitted field where a path `may_pass` one more wall.
+    """
     before, behind = distances
     s_in, s_out = unit(points[:, 1] - points[:, 0]), unit(points[:, 2] - points[:, 1])
     result = np.zeros_like(field)
@@ -217,7 +234,7 @@ def diffracted(
         i = np.flatnonzero(_crosses(edge, points))
         if len(i):
             length = before[i] * behind[i] / (before[i] + behind[i])
-            result[i] = _over(edge, radio, (s_in[i], s_out[i]), length, field[i])
+            result[i] = _over(edge, radio, (s_in[i], s_out[i]), length, field[i], may_pass[i])
     return result
 
 
@@ -246,18 +263,41 @@ def face_dyad(
         Sine and cosine of the angle with the edge, about which the free space lies
         counter-clockwise of this face.
     """
-    phi_in, phi = angles
-    sine = np.sqrt(np.abs(np.sin(phi) * np.sin(phi_in)))
-    c = radio.reflect(number, np.minimum(sine * beta[0], 1.0))
-    slant = 0.5 * beta[1] * sine * (np.cos(phi_in) - np.cos(phi))
-    turn = np.arctan2(slant, 1.0 - sine**2)
-    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-    rotation = np.moveaxis(rotation, 2, 0)
+    cosine, rotation = _plane_of_incidence(angles, beta)
+    c = radio.reflect(number, cosine)
     return rotation @ (np.stack([c.r_te, c.r_tm], 1)[:, :, None] * rotation)
 
 
+def sheet_dyad(
+    radio: Radio, number: int, angles: tuple[Floats, Floats], beta: tuple[Floats, Floats]
+) -> Complexes:
+    """Transmission (m, 2, 2) of a sheet, as `face_dyad`; docs/theory.md, below eq. 21b."""
+    cosine, rotation = _plane_of_incidence(angles, beta)
+    coefficients = np.stack(radio.transmit(number, cosine), 1)[:, :, None]
+    dyad = np.swapaxes(rotation, 1, 2) @ (coefficients * rotation)
+    mixing = np.sin(0.5 * (angles[1] - angles[0]))[:, None, None]
+    return dyad * np.where(np.eye(2, dtype=bool), 1.0, mixing)
+
+
+def _plane_of_incidence(
+    angles: tuple[Floats, Floats], beta: tuple[Floats, Floats]
+) -> tuple[Floats, Floats]:
+    """Cosine of incidence (m,) on a face, and rotation (m, 2, 2) from the edge into its plane."""
+    phi_in, phi = angles
+    sine = np.sqrt(np.abs(np.sin(phi) * np.sin(phi_in)))
+    slant = 0.5 * beta[1] * sine * (np.cos(phi_in) - np.cos(phi))
+    turn = np.arctan2(slant, 1.0 - sine**2)
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    return np.minimum(sine * beta[0], 1.0), np.moveaxis(rotation, 2, 0)
+
+
 def _over(
-    edge: Edge, radio: Radio, rays: tuple[Floats, Floats], length: Floats, field: Complexes
+    edge: Edge,
+    radio: Radio,
+    rays: tuple[Floats, Floats],
+    length: Floats,
+    field: Complexes,
+    may_pass: Mask,
 ) -> Complexes:
     s_in, s_out = rays
     phi_in, phi = edge.angles(-s_in), edge.angles(s_out)
@@ -270,7 +310,11 @@ def _over(
         face_dyad(radio, edge.n_slab, from_n, (sin_beta, -cos_beta)),
     )
     k = 2.0 * np.pi / radio.source.wavelength_m
-    dyad = wedge(n, (phi_in, phi), sin_beta, k * length * sin_beta**2, faces)
+    through = None
+    if may_pass.any() and n > 2.0 - 1e-9 and edge.o_slab == edge.n_slab:
+        through = sheet_dyad(radio, edge.o_slab, (phi_in, phi), (sin_beta, cos_beta))
+        through = through * may_pass[:, None, None]
+    dyad = wedge(n, (phi_in, phi), sin_beta, k * length * sin_beta**2, faces, through)
     round_in = -unit(np.cross(edge.tangent, s_in))
     round_out = unit(np.cross(edge.tangent, s_out))
     along_in, along_out = np.cross(round_in, s_in), np.cross(round_out, s_out)

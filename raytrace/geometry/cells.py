@@ -1,8 +1,9 @@
 """The plan view cut into convex cells.
 
 Nothing stands between two points of a convex cell, so a beam that is followed from cell to cell
-through their edges needs no occlusion test. An edge of a cell is a wall, a partial wall (open at
-some heights: a door, a window, a counter) or a portal (a cut between two cells, without a wall).
+through their edges needs no occlusion test. An edge of a cell is a wall of one material, a partial
+wall (of several materials, or open at some heights: a door, a window, a counter) or a portal (a cut
+between two cells, without a wall).
 """
 
 from collections.abc import Sequence
@@ -18,7 +19,7 @@ from raytrace.geometry.chains import Segment, Vertex
 from raytrace.geometry.convex_parts import Edge, Ring, convex_parts, edges_of, undirected
 from raytrace.geometry.junctions import NEAR_M
 from raytrace.geometry.noding import node
-from raytrace.geometry.sheets import OPEN, Panel, Profile, Sheets
+from raytrace.geometry.sheets import Panel, Profile, Sheets
 from raytrace.kernels.plan_view import GRAZING_M, PARTIAL, PORTAL, WALL, PlanView
 
 
@@ -125,12 +126,12 @@ def _plan_view(
     cell = np.repeat(np.arange(len(corners)), [len(ring) for ring in corners])
     number = {(int(a), int(b)): k for k, (a, b) in enumerate(ends)}
     twin = np.array([number.get((int(b), int(a)), -1) for a, b in ends], dtype=np.int64)
-    passable = np.array([p is None or OPEN in p.profile.materials for p in panels])
+    passable = np.array([p is None or not p.profile.is_solid for p in panels])
     _refuse_open(passable & (twin < 0), vertices[ends])
     profiles = list(dict.fromkeys(p.profile for p in panels if p is not None))
     plane, line = _lines(panels, vertices[ends], planes)
     kind = np.array([_kind(p) for p in panels], dtype=np.int64)
-    behind = _behind(rings, corners, kind)
+    behind = _behind(rings, corners, ~passable)
     return PlanView(
         cell_edges=_offsets(corners),
         ends=vertices[ends].reshape(-1, 4),
@@ -150,8 +151,8 @@ def _plan_view(
     )
 
 
-def _behind(rings: list[list[int]], corners: list[list[int]], kind: Ints) -> list[list[int]]:
-    """For each edge that is a full wall, the edges of other cells behind it."""
+def _behind(rings: list[list[int]], corners: list[list[int]], is_solid: Bools) -> list[list[int]]:
+    """For each edge that is a wall at every height, the edges of other cells behind it."""
     owner: dict[tuple[int, int], int] = {}
     first = 0
     for ring, kept in zip(rings, corners, strict=True):
@@ -161,10 +162,10 @@ def _behind(rings: list[list[int]], corners: list[list[int]], kind: Ints) -> lis
             number += a in kept
             owner[a, b] = number
         first += len(kept)
-    behind: list[list[int]] = [[] for _ in kind]
+    behind: list[list[int]] = [[] for _ in is_solid]
     for (a, b), edge in owner.items():
         back = owner.get((b, a), -1)
-        if kind[edge] == WALL and back >= 0 and back not in behind[edge]:
+        if is_solid[edge] and back >= 0 and back not in behind[edge]:
             behind[edge].append(back)
     return behind
 

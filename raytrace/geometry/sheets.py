@@ -39,6 +39,11 @@ class Profile(NamedTuple):
         """Whether one material fills the whole height."""
         return len(self.materials) == 1 and self.materials[0] != OPEN
 
+    @property
+    def is_solid(self) -> bool:
+        """Whether there is a wall at every height, of one material or several."""
+        return OPEN not in self.materials
+
     def at(self, z: float) -> int:
         """Material at height z [m], or `OPEN`."""
         return self.materials[min(int(np.searchsorted(self.tops, z)), len(self.tops) - 1)]

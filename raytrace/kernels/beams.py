@@ -17,9 +17,9 @@ from raytrace.kernels.rows import copy_row, enlarged, resized
 
 PARENT, EDGE, REFLECTED, CELL, ORDER, TRANSMITTED, BOUNCES, INTERACTIONS = range(8)
 """Columns of `Tree.link`: the beam it split from; the edge it came through or was mirrored at,
--1 at the root; whether it was mirrored; the cell it is in; wall reflections so far; full walls
-gone through; floor or ceiling reflections that its heights require; reflections, walls gone
-through and partial walls so far."""
+-1 at the root; whether it was mirrored; the cell it is in; wall reflections so far; solid walls
+gone through; floor or ceiling reflections that its heights require; reflections, solid walls gone
+through and partial walls with openings so far."""
 
 IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y = range(6)
 """Columns of `Tree.beam` [m]: the root's image, and the corners of the window."""
@@ -61,7 +61,7 @@ def grow_tree(
         The cells it lies in.
     limits
         Maximum numbers of reflections, those required at floor and ceiling included, and of
-        transmissions through full walls.
+        transmissions through solid walls.
     guard
         May end the growth.
 
@@ -232,7 +232,7 @@ def transmit_beam(
     e: int,
     window: Window,
 ) -> int:
-    """Write the beams that go through a full wall, from row n on; return the next row."""
+    """Write the beams that go through a solid wall, from row n on; return the next row."""
     for k in range(view.behind_first[e], view.behind_first[e + 1]):
         f = view.behind[k]
         back = (view.ends[f, 2], view.ends[f, 3], view.ends[f, 0], view.ends[f, 1])

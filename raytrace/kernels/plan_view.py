@@ -17,7 +17,8 @@ from raytrace.kernels.lanes import (
 )
 
 WALL, PARTIAL, PORTAL = 0, 1, 2
-"""Kinds of cell edges: solid at every height, open at some heights, open at every height."""
+"""Kinds of cell edges: one slab at every height; several slabs, or open at some heights; open at
+every height."""
 
 GRAZING_M = 1e-7
 """A ray within this distance of a corner or of a horizontal edge grazes it [m]. What differs on
@@ -47,7 +48,7 @@ class PlanView(NamedTuple):
         (n_edges,) the same edge seen from the other cell, and that cell, where a ray can pass
         at some height; -1 where there is none.
     behind_first, behind
-        Edges of other cells at the back of edge e, where it is a wall, are
+        Edges of other cells at the back of edge e, where it is solid at every height, are
         behind[behind_first[e]:behind_first[e + 1]].
     cell_of
         (n_edges,) the cell of each edge.

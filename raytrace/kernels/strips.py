@@ -259,7 +259,7 @@ def split_strip(
 def transmit_strip(
     view: PlanView, tree: StripTree, i: int, n: int, e: int, scratch: tuple[Floats, Floats]
 ) -> int:
-    """Write the beams that go through a full wall, from row n on; return the next row."""
+    """Write the beams that go through a solid wall, from row n on; return the next row."""
     work, out = scratch
     for k in range(view.behind_first[e], view.behind_first[e + 1]):
         f = view.behind[k]
@@ -284,7 +284,7 @@ def grow_strips(
     root, root_cell
         The edge, as seen from the cell that the beams go into.
     limits
-        Maximum numbers of reflections and of transmissions through full walls.
+        Maximum numbers of reflections and of transmissions through solid walls.
     guard
         May end the growth.
 

@@ -27,7 +27,8 @@ from scipy.spatial import cKDTree
 from floorplans.exporters import ExportOptions, export
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from brute_force import Facets, Found
+from brute_force import Found
+from brute_force_facets import Facets
 from brute_force_field import Radio, path_gains
 
 from raytrace import Isotropic, Transmitter

@@ -74,9 +74,9 @@ def _columns(
     yield Sheet(at(done), end, *heights, slab)
 
 
-def door(near: float, far: float, head: float = 2.25) -> Hole:
-    """Return an open door."""
-    return Hole(near, far, 0.0, head)
+def door(near: float, far: float, head: float = 2.25, filling: int | None = None) -> Hole:
+    """Return an open door, or one shut by a leaf."""
+    return Hole(near, far, 0.0, head, filling)
 
 
 def window(near: float, far: float, filling: int | None = None) -> Hole:

@@ -1,12 +1,14 @@
 """The tracer's paths beside the brute force's."""
 
 import numpy as np
-from brute_force import Facets, Found, find_paths
+from brute_force import Found, find_paths
+from brute_force_facets import Facets
+from brute_force_field import Radio, path_gains
 from buildings import Building
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from raytrace import Paths, TraceConfig, Transmitter, trace_paths
+from raytrace import Isotropic, Paths, TraceConfig, Transmitter, trace_paths
 
 Floats = NDArray[np.float64]
 
@@ -54,8 +56,31 @@ def check_every_path(
     """Require that the tracer's paths are the brute force's."""
     source = off_ties(source)
     paths = trace_paths(building.scene, Transmitter(source), receivers, config)
-    limits = config.max_reflections, config.max_diffractions
+    limits = config.max_reflections, config.max_diffractions, config.max_transmissions
     found = find_paths(facets_of(building), np.array(source), receivers, *limits)
     assert_same_paths(as_found(paths), found, tolerance_m)
     steps = np.linalg.norm(np.diff(found.vertices, axis=1), axis=2).sum(axis=1)
     np.testing.assert_allclose(np.sort(paths.length_m), np.sort(steps), rtol=0, atol=tolerance_m)
+
+
+def check_every_gain(
+    building: Building,
+    source: tuple[float, float, float],
+    receivers: Floats,
+    config: TraceConfig,
+) -> None:
+    """Require that the gains of the tracer's paths are those of a field vector.
+
+    Near grazing incidence tables are interpolated over steep slopes: the error counts against the
+    strongest path there.
+    """
+    transmitter = Transmitter(off_ties(source), antenna=Isotropic())
+    paths = trace_paths(building.scene, transmitter, receivers, config, receive_antenna=Isotropic())
+    radio = Radio(building.slabs, transmitter, Isotropic(), config.max_transmissions)
+    expected = path_gains(facets_of(building), as_found(paths), radio)
+    error = np.abs(paths.gain - expected)
+    allowed = 1e-3 * np.abs(expected) + 1e-6 * np.abs(expected).max(initial=0.0)
+    worst = np.argmax(error - allowed) if len(paths) else 0
+    assert (error <= allowed).all(), (
+        f"{paths.sequence(int(worst))}: {paths.gain[worst]}, expected {expected[worst]}"
+    )

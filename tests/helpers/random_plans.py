@@ -1,6 +1,7 @@
 """Buildings drawn at random: any angle, joined and free walls, pillars, openings, every height."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -113,6 +114,8 @@ def _wall(rng: Generator, a: Point, b: Point, length: float) -> Sheets:
         (window(near, far),),
         (window(near, middle, GLASS), door(middle, far)),
         (door(near, middle), window(0.5 * (middle + far), far)),
+        (door(near, far, filling=int(rng.integers(3))),),
+        (window(near, middle), door(middle, far, head=HEIGHT_M, filling=GLASS)),
     ]
     kind = int(rng.integers(len(holes) + 2))
     if kind < len(holes):
@@ -121,6 +124,9 @@ def _wall(rng: Generator, a: Point, b: Point, length: float) -> Sheets:
         return wall(a, b, slab=int(rng.integers(3)), **_heights(rng))
     z = np.sort(rng.choice(np.arange(0.0, HEIGHT_M + 0.1, 0.25), 6, replace=False))
     boards = zip(z[::2], z[1::2], strict=True)
+    if rng.integers(2):
+        tops = [0.0, float(z[1]), float(z[3]), HEIGHT_M]
+        boards = pairwise(dict.fromkeys(tops))
     return tuple(Sheet(a, b, float(low), float(high), k) for k, (low, high) in enumerate(boards))
 
 

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from buildings import (
     wall,
     window,
 )
-from comparing import check_every_path
+from comparing import check_every_gain, check_every_path
 
 from raytrace import Scene, SceneError, SceneWarning, TraceConfig, Transmitter, trace_paths
 from raytrace.geometry.junctions import NEAR_M
@@ -33,6 +34,14 @@ SMALL_DIAMOND = ((3.0, 1.75), (3.5, 2.0), (3.125, 2.5))
 def boards(start: tuple[float, float], end: tuple[float, float], *tops: float) -> tuple[Sheet, ...]:
     """Return boards above each other, every other interval of height open."""
     intervals = zip(tops[::2], tops[1::2], strict=True)
+    return tuple(Sheet(start, end, *z, k % 3) for k, z in enumerate(intervals))
+
+
+def boards_of(
+    start: tuple[float, float], end: tuple[float, float], *tops: float
+) -> tuple[Sheet, ...]:
+    """Return a wall of boards of different slabs, without an opening."""
+    intervals = pairwise((0.0, *tops))
     return tuple(Sheet(start, end, *z, k % 3) for k, z in enumerate(intervals))
 
 
@@ -81,6 +90,14 @@ PLANS: dict[str, Building] = {
     "a low wall before a wall with a window": storey(
         *wall(*ACROSS, window(1.0, 2.5)), *wall((3.5, 0.5), (3.5, 3.0), slab=GLASS, high=1.25)
     ),
+    "a shut door and an open one": storey(
+        *wall(*ACROSS, door(0.5, 1.5, filling=GLASS), door(2.0, 3.0))
+    ),
+    "a glazed window": storey(*wall(*ACROSS, window(0.5, 2.5, GLASS))),
+    "boards of three materials": storey(*boards_of(*ACROSS, 0.75, 1.75, 3.0)),
+    "a shut door behind a half-height wall": storey(
+        *wall(*ACROSS, door(1.0, 2.5, filling=CONCRETE)), *wall((4.5, 0.0), (4.5, 4.0), high=1.25)
+    ),
     "a wall along the outside wall": storey(*wall((6.0, 1.0), (6.0, 3.0), slab=PLASTERBOARD)),
     "two rooms without a door": storey(*wall(*ACROSS)),
 }
@@ -96,6 +113,14 @@ def test_every_path_with_a_diffraction_is_found(name: str) -> None:
 def test_every_path_of_four_reflections_is_found(name: str) -> None:
     receivers = PLANS[name].random_points(3, seed=62)
     check_every_path(PLANS[name], SOURCE, receivers, TraceConfig(4, 0), TOLERANCE_M)
+
+
+@pytest.mark.parametrize("limits", [(1, 1, 3), (2, 0, 2)])
+@pytest.mark.parametrize("name", PLANS)
+def test_every_path_through_walls_is_found(name: str, limits: tuple[int, int, int]) -> None:
+    receivers, config = PLANS[name].random_points(3, seed=65), TraceConfig(*limits)
+    check_every_path(PLANS[name], SOURCE, receivers, config, TOLERANCE_M)
+    check_every_gain(PLANS[name], SOURCE, receivers, config)
 
 
 @pytest.mark.parametrize("name", ["pillar with a spur", "walls that overlap"])

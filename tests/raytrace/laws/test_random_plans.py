@@ -8,7 +8,7 @@ import os
 
 import numpy as np
 from buildings import Building
-from comparing import as_found, assert_same_paths, check_every_path
+from comparing import as_found, assert_same_paths, check_every_gain, check_every_path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -36,6 +36,7 @@ def check(seed: int, n_walls: int, config: TraceConfig) -> None:
     building = random_building(seed, n_walls)
     source, *receivers = building.random_points(3, seed)
     check_every_path(building, tuple(source), np.array(receivers), config, EXACT_M)
+    check_every_gain(building, tuple(source), np.array(receivers), config)
 
 
 @given(seed=seeds, n_walls=n_inside)
@@ -54,6 +55,18 @@ def test_three_reflections_and_a_diffraction(seed: int, n_walls: int) -> None:
 @examples(few=6)
 def test_four_reflections(seed: int, n_walls: int) -> None:
     check(seed, n_walls, TraceConfig(4, 0))
+
+
+@given(seed=seeds, n_walls=st.integers(2, 4))
+@examples(few=8)
+def test_a_reflection_a_diffraction_and_transmissions(seed: int, n_walls: int) -> None:
+    check(seed, n_walls, TraceConfig(1, 1, 3))
+
+
+@given(seed=seeds, n_walls=st.integers(2, 4))
+@examples(few=6)
+def test_three_reflections_and_transmissions(seed: int, n_walls: int) -> None:
+    check(seed, n_walls, TraceConfig(3, 0, 2))
 
 
 def reverse(paths: Paths) -> Paths:

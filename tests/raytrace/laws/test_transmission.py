@@ -2,10 +2,14 @@
 
 import numpy as np
 import pytest
+from brute_force import find_paths
+from brute_force_facets import Facets
 from buildings import CONCRETE, PLASTERBOARD, Building, box, door, wall
+from comparing import as_found, assert_same_paths, off_ties
 from numpy.typing import NDArray
 
-from raytrace import Isotropic, SceneError, TraceConfig, Transmitter, trace_paths
+from floorplans import load
+from raytrace import Isotropic, Scene, SceneError, TraceConfig, Transmitter, trace_paths
 from raytrace.radio.materials import find_material
 
 SLABS = (("concrete", 0.2), ("plasterboard", 0.1), ("glass", 0.01), ("vacuum", 0.1))
@@ -69,6 +73,23 @@ def test_a_path_goes_through_no_more_walls_than_it_may() -> None:
         assert through.max() == most
         for fewer in range(most):
             assert np.count_nonzero(through <= fewer) == len(found[fewer])
+
+
+@pytest.mark.parametrize(("limits", "n_paths"), [((1, 0, 1), 303), ((2, 0, 2), 2751)])
+def test_every_path_through_the_doors_and_windows_of_a_flat(
+    limits: tuple[int, int, int], n_paths: int
+) -> None:
+    """Numbers of paths to a grid of 1 m, as an independent tracer of meshes counts them too."""
+    plan = load("flat")
+    walls = plan.to_mesh()
+    scene = Scene.from_mesh(walls.mesh, walls.face_material, walls.materials)
+    source = np.array(off_ties(plan.source))
+    x, y = np.meshgrid(np.arange(0.5, 12.0) + 1.1e-4, np.arange(0.5, 9.0) + 2.3e-4)
+    receivers = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, 1.1)])
+    paths = trace_paths(scene, Transmitter(tuple(source)), receivers, TraceConfig(*limits))
+    facets = Facets(np.asarray(walls.mesh.triangles), np.asarray(walls.face_material))
+    assert_same_paths(as_found(paths), find_paths(facets, source, receivers, *limits), 1e-9)
+    assert len(paths) == n_paths
 
 
 def test_a_room_without_a_door_is_heard_through_its_walls() -> None:
