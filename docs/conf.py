@@ -1,6 +1,11 @@
 """Sphinx configuration."""
 
+import sys
 from importlib.metadata import version as installed_version
+from importlib.resources import files
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
 project = "rssnav"
 author = "The rssnav developers"
@@ -11,12 +16,15 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
+    "mathml",
 ]
+html_math_renderer = "mathml"
+html_static_path = ["_static", str(files("ziamath") / "fonts" / "STIXTwoMath-Regular.ttf")]
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 3
 html_theme = "furo"
 html_title = "rssnav"
-exclude_patterns = ["_build", "gallery"]
+exclude_patterns = ["_build", "_extensions", "gallery"]
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 napoleon_numpy_docstring = True
