@@ -75,6 +75,6 @@ dist: install ## build wheel and source archive into dist/
 	$(BIN)/python -m build
 
 clean: ## remove the environment, results and caches
-	rm -rf $(VENV) $(VENV)-lowest $(PEERS) $(RESULTS) build dist docs/_build docs/examples docs/sg_execution_times.rst
+	rm -rf $(VENV) $(VENV)-lowest $(PEERS) $(RESULTS) build dist docs/_build docs/api/generated docs/examples docs/sg_execution_times.rst
 	rm -rf .pytest_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -13,6 +13,7 @@ version = release = installed_version("rssnav")
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
@@ -25,6 +26,7 @@ myst_heading_anchors = 3
 html_theme = "furo"
 html_title = "rssnav"
 exclude_patterns = ["_build", "_extensions", "gallery"]
+autodoc_default_options = {"members": True}
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 napoleon_numpy_docstring = True

@@ -25,6 +25,9 @@ from raytrace.radio.materials import (
     Layer,
     Layered,
     Material,
+    Slab,
+    dielectrics_of,
+    find_material,
 )
 from raytrace.radio.pattern_table import PatternTable
 from raytrace.radio.transmitter import Transmitter
@@ -60,10 +63,13 @@ __all__ = [
     "Scene",
     "SceneError",
     "SceneWarning",
+    "Slab",
     "TraceConfig",
     "TraceStoppedError",
     "Transmitter",
     "compute_radio_map",
+    "dielectrics_of",
     "estimate_cost",
+    "find_material",
     "trace_paths",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import re
 import sys
 from pathlib import Path
@@ -101,3 +102,10 @@ def test_a_block_that_is_not_run_says_why() -> None:
     (runs,) = blocks(page.removeprefix("<!-- not run: needs a file of yours -->\n"))
     assert (not_run.runs, runs.runs) == (False, True)
     assert runs.commands == [["rssnav", "doctor"]]
+
+
+@pytest.mark.parametrize("package", ["floorplans", "raytrace", "rssnav"])
+def test_the_api_reference_lists_all_that_a_package_exports(package: str) -> None:
+    pages = "".join(page.read_text("utf-8") for page in (ROOT / "docs" / "api").glob("*.md"))
+    exported: list[str] = importlib.import_module(package).__all__
+    assert [name for name in exported if not re.search(rf"\b{name}\b", pages)] == []
