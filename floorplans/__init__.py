@@ -6,9 +6,10 @@
 (0.0, 0.0, 12.0, 9.0)
 
 A `FloorPlan` is one storey: straight walls with openings, flat floor and ceiling, a material each,
-the transmitter (`source`) and the start of a search. `FloorPlan.to_mesh` builds a `trimesh` of
-sheets with a material per face, `FloorPlan.solid_segments` returns what is solid at a height, and
-`floorplans.pictures.plan_view` draws it. Lengths are in metres, z is the height above the floor.
+transmitters, and for flights the one to search for (`source`) and the start. `FloorPlan.to_mesh`
+builds a `trimesh` of sheets with a material per face, `FloorPlan.solid_segments` returns what is
+solid at a height, and `floorplans.pictures.plan_view` draws it. Lengths are in
+metres, z is the height above the floor.
 """
 
 from floorplans.errors import PlanError
@@ -25,6 +26,7 @@ from floorplans.mesh import SheetMaterial, WallMesh
 from floorplans.office import generate_office
 from floorplans.plan import FloorPlan
 from floorplans.toml.writer import dumps
+from floorplans.transmitters import PlanTransmitter
 from floorplans.walls import Opening, OpeningKind, Panel, Wall, panels
 
 __all__ = [
@@ -39,6 +41,7 @@ __all__ = [
     "Panel",
     "PlanError",
     "PlanMaterial",
+    "PlanTransmitter",
     "SheetMaterial",
     "Wall",
     "WallMesh",

@@ -1,10 +1,10 @@
 """FloorPlan <-> GeoJSON that contains a complete plan.
 
 The collection has the foreign member ``rssnav_plan`` with every key of the plan's TOML file that is
-not geometry. The outline, each wall, each opening, the source and the start are features; a
-feature's properties are the keys of its table in the TOML file. Coordinates are longitude and
-latitude if the plan has an origin; otherwise they are the plan's metres, with ``"crs": null`` as in
-GeoJSON 2008 for coordinates without a place on the Earth.
+not geometry. The outline, each wall, opening and transmitter, the source and the start are
+features; a feature's properties are the keys of its table in the TOML file. Coordinates are
+longitude and latitude if the plan has an origin; otherwise they are the plan's metres, with
+``"crs": null`` as in GeoJSON 2008 for coordinates without a place on the Earth.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from floorplans.walls import Wall
 MEMBER = "rssnav_plan"
 """Foreign member of the collection that identifies a GeoJSON file with a plan."""
 
-GEOMETRY_KEYS = ("outline", "holes", "walls", "source", "start")
+GEOMETRY_KEYS = ("outline", "holes", "walls", "source", "start", "transmitters")
 
 _MOVED_M = 1e-6
 """A feature farther than this from its exact points was moved by another program [m]."""
@@ -43,8 +43,13 @@ def plan_to_geojson(plan: FloorPlan) -> Json:
     features = [_feature(plan, "Polygon", rings, {"kind": "outline"})]
     for index, (wall, table) in enumerate(zip(plan.walls, data["walls"], strict=True)):
         features += _wall_features(plan, wall, table, index)
-    features.append(_feature(plan, "Point", data["source"], {"kind": "source"}))
-    features.append(_feature(plan, "Point", data["start"], {"kind": "start"}))
+    for kind in ("source", "start"):
+        if kind in data:
+            features.append(_feature(plan, "Point", data[kind], {"kind": kind}))
+    for table in data.get("transmitters", []):
+        facts = {key: value for key, value in table.items() if key != "position"}
+        properties = {"kind": "transmitter", **facts}
+        features.append(_feature(plan, "Point", table["position"], properties))
     facts = {key: value for key, value in data.items() if key not in GEOMETRY_KEYS}
     collection: Json = {"type": "FeatureCollection", MEMBER: facts, "features": features}
     return collection if plan.origin else {"crs": None, **collection}
@@ -129,6 +134,8 @@ def _plan_data(collection: Mapping[str, Any]) -> Json:
             data |= {"holes": holes} if holes else {}
         elif kind in ("source", "start"):
             data[kind] = points
+        elif kind == "transmitter":
+            data.setdefault("transmitters", []).append({**table, "position": points})
         elif kind == "wall":
             index = table.pop("wall")
             walls[index] = {**table, "points": points}

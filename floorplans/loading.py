@@ -24,6 +24,7 @@ from floorplans.plan import FloorPlan
 from floorplans.toml.arcs import along_arcs, chords_of_arc
 from floorplans.toml.materials import read_materials
 from floorplans.toml.table import Table, as_points
+from floorplans.toml.transmitters import read_transmitters
 from floorplans.toml.writer import FORMAT_VERSION, dumps
 from floorplans.unchecked import PlanFile, UncheckedPlan
 from floorplans.values import LENGTH, check_number
@@ -32,7 +33,7 @@ from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 PLAN_KEYS = (
     "name", "format", "height_m", "floor_material", "floor_thickness_m", "ceiling_material",
     "ceiling_thickness_m", "source", "start", "outline", "holes", "material_edition", "materials",
-    "origin", "defaults", "walls",
+    "origin", "transmitters", "defaults", "walls",
 )  # fmt: skip
 ORIGIN_KEYS = ("longitude_deg", "latitude_deg", "rotation_deg")
 DEFAULTS_KEYS = ("material", "thickness_m")
@@ -179,8 +180,6 @@ def _read_unchecked(table: Table) -> PlanFile:
     walls = table.tables("walls", WALL_KEYS)
     pieces = [_read_wall(wall, defaults, height_m, own) for wall in walls]
     floor, ceiling = table.text("floor_material"), table.text("ceiling_material")
-    x, y, z = table.coordinates("source", "xyz")
-    start_x, start_y = table.coordinates("start", "xy")
     plan = UncheckedPlan(
         name=table.text("name"),
         outline=_read_outline(table, [_points_of(row) for row in walls if "arc" in row.data]),
@@ -188,13 +187,14 @@ def _read_unchecked(table: Table) -> PlanFile:
         height_m=height_m,
         floor_material=floor,
         ceiling_material=ceiling,
-        source=(x, y, z),
-        start=(start_x, start_y),
+        source=table.optional_xyz("source"),
+        start=table.optional_xy("start"),
         floor_thickness_m=table.number("floor_thickness_m", _layers_m(floor, own, 0.2)),
         ceiling_thickness_m=table.number("ceiling_thickness_m", _layers_m(ceiling, own, 0.2)),
         origin=_read_origin(table),
         materials=materials,
         material_edition=table.optional_text("material_edition"),
+        transmitters=read_transmitters(table),
     )
     return PlanFile(plan, tuple(len(walls) for walls in pieces))
 

@@ -7,6 +7,7 @@ from functools import cached_property
 from hashlib import sha256
 
 from floorplans.checks.plan import check_plan
+from floorplans.errors import PlanError
 from floorplans.mesh import WallMesh, build_mesh
 from floorplans.toml.writer import dumps
 from floorplans.unchecked import UncheckedPlan
@@ -32,9 +33,10 @@ class FloorPlan(UncheckedPlan):
         From the floor (z = 0) to the ceiling [m].
     floor_material, ceiling_material : str
         Of `floorplans.MATERIALS`, or a name of `materials`.
-    source : (float, float, float)
-        Where the transmitter is, (x, y, z) [m].
-    start : (float, float)
+    source : (float, float, float) or None
+        Where the transmitter is that a flight searches for, (x, y, z) [m]; None in a plan that
+        nobody flies in.
+    start : (float, float) or None
         The cell centre (x, y) a search begins at [m].
     floor_thickness_m, ceiling_thickness_m : float
         Of the floor slabs [m].
@@ -45,6 +47,8 @@ class FloorPlan(UncheckedPlan):
     material_edition : str or None
         Of `floorplans.MATERIAL_EDITIONS`, for the built-in materials; by default the
         tracer's choice.
+    transmitters : tuple of PlanTransmitter
+        Access points and the like, each with an id; the source is not one of them.
 
     Raises
     ------
@@ -64,6 +68,24 @@ class FloorPlan(UncheckedPlan):
     def sha256(self) -> str:
         """Hex digest of the plan's TOML text; a file's comments and layout do not change it."""
         return sha256(dumps(self).encode()).hexdigest()
+
+    def require_source(self) -> tuple[float, float, float]:
+        """Return the source [m]; raise `PlanError` for a plan without one."""
+        if self.source is None:
+            raise PlanError(
+                f"plan {self.name!r} has no source, which a flight needs: expected [x, y, z] [m]",
+                ("source",),
+            )
+        return self.source
+
+    def require_start(self) -> tuple[float, float]:
+        """Return the start [m]; raise `PlanError` for a plan without one."""
+        if self.start is None:
+            raise PlanError(
+                f"plan {self.name!r} has no start, which a flight needs: expected [x, y] [m]",
+                ("start",),
+            )
+        return self.start
 
     def to_mesh(self) -> WallMesh:
         """Build the sheets of walls, floor and ceiling; see `floorplans.mesh`."""

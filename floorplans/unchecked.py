@@ -13,6 +13,7 @@ from shapely.geometry import Polygon
 from floorplans.errors import Place
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import MATERIAL_COLOURS, OWN_COLOUR, Own, PlanMaterial, by_name
+from floorplans.transmitters import PlanTransmitter
 from floorplans.walls import Wall, solid_segments
 
 
@@ -26,13 +27,14 @@ class UncheckedPlan:
     height_m: float
     floor_material: str
     ceiling_material: str
-    source: tuple[float, float, float]
-    start: tuple[float, float]
+    source: tuple[float, float, float] | None = None
+    start: tuple[float, float] | None = None
     floor_thickness_m: float = 0.2
     ceiling_thickness_m: float = 0.2
     origin: GeoOrigin | None = None
     materials: tuple[PlanMaterial, ...] = ()
     material_edition: str | None = None
+    transmitters: tuple[PlanTransmitter, ...] = ()
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

@@ -1,7 +1,7 @@
 """Floor plan -> radio map, kept in a file and computed again only if something has changed."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -18,6 +18,7 @@ from raytrace import (
     Transmitter,
     compute_radio_map,
 )
+from raytrace.results.antenna_file import as_stored
 from raytrace.results.map_file import is_radio_map
 from raytrace.trace import TRACER_VERSION
 from rssnav.cost_notice import announcement
@@ -64,7 +65,7 @@ class MapRequest:
         for what, same in (
             ("for a different plan", radio_map.plan_sha256 == self.plan.sha256),
             ("with a different trace configuration", radio_map.config == self.config),
-            ("for a different transmitter", radio_map.transmitter == self.transmitter),
+            ("for a different transmitter", _same(radio_map.transmitter, self.transmitter)),
             ("for a different receive antenna", radio_map.receive_antenna == HalfWaveDipole()),
             ("on a different grid", radio_map.grid.same_as(self.grid)),
             *(
@@ -176,7 +177,7 @@ def make_map(
     request = MapRequest(
         plan,
         Grid.over(plan.bounds, cell_size_m, height_m),
-        Transmitter(plan.source, power_dbm, frequency_hz),
+        Transmitter(plan.require_source(), power_dbm, frequency_hz),
         config or TraceConfig(),
         edition,
     )
@@ -247,3 +248,10 @@ def _current_map(request: MapRequest, path: Path, notice: Notice | None) -> Radi
 
 def _drop_notice(_sentence: str) -> None:
     """Drop a notice."""
+
+
+def _same(found: Transmitter, wanted: Transmitter) -> bool:
+    """Whether a transmitter is the wanted one, as a file would give that one back."""
+    return replace(found, antenna=as_stored(found.antenna)) == replace(
+        wanted, antenna=as_stored(wanted.antenna)
+    )

@@ -116,7 +116,7 @@ def _map_without_readings(plan: FloorPlan) -> RadioMap:
         rss_coherent_dbm=zeros,
         path_count=zeros.astype(np.int64),
         grid=grid,
-        transmitter=Transmitter(plan.source),
+        transmitter=Transmitter(plan.require_source()),
         config=TraceConfig(),
         plan_sha256=plan.sha256,
     )

@@ -137,7 +137,7 @@ class GridWorld:
             speed=int(speed),
             step_length_m=_step_lengths(radio_map.grid.cell_size_m * speed),
             shape=(n_y, n_x),
-            source=plan.source,
+            source=plan.require_source(),
             plan_name=plan.name,
             plan_sha256=plan.sha256,
         )
@@ -186,7 +186,7 @@ def _cell_centres(radio_map: RadioMap) -> NDArray[np.float64]:
 
 def _distance_to_transmitter(plan: FloorPlan, radio_map: RadioMap) -> NDArray[np.float64]:
     """Horizontal distance of every cell to the transmitter [m], shape (n_y * n_x,)."""
-    offset = _cell_centres(radio_map) - np.array(plan.source[:2])
+    offset = _cell_centres(radio_map) - np.array(plan.require_source()[:2])
     return np.hypot(offset[:, 0], offset[:, 1])
 
 
@@ -235,11 +235,11 @@ def _renumbered(next_cell: NDArray[np.int64], reached: NDArray[np.int64]) -> NDA
 
 def _start_cell(plan: FloorPlan, radio_map: RadioMap) -> int:
     """Flat index of the cell whose centre is the plan's start."""
-    grid = radio_map.grid
-    i_x = int(np.argmin(np.abs(grid.x - plan.start[0])))
-    i_y = int(np.argmin(np.abs(grid.y - plan.start[1])))
+    grid, (x, y) = radio_map.grid, plan.require_start()
+    i_x = int(np.argmin(np.abs(grid.x - x)))
+    i_y = int(np.argmin(np.abs(grid.y - y)))
     centre = (float(grid.x[i_x]), float(grid.y[i_y]))
-    if max(abs(centre[0] - plan.start[0]), abs(centre[1] - plan.start[1])) > 1e-6:
+    if max(abs(centre[0] - x), abs(centre[1] - y)) > 1e-6:
         raise WorldError(
             f"plan {plan.name!r}: the start {plan.start} m is not at a cell centre of the radio "
             f"map; the nearest is {centre} m: move the start there, or make a map whose grid "

@@ -18,6 +18,7 @@ from floorplans.checks.materials import check_materials, check_slab
 from floorplans.checks.walls import check_wall
 from floorplans.errors import Place, PlanError
 from floorplans.georeference import check_origin
+from floorplans.transmitters import check_transmitters
 from floorplans.unchecked import UncheckedPlan
 from floorplans.values import (
     COORDINATE,
@@ -47,7 +48,7 @@ _PARALLEL_SINE = 0.01
 
 
 def check_plan(plan: UncheckedPlan) -> None:
-    """Raise `PlanError` unless the plan describes a closed storey a search can be run in."""
+    """Raise `PlanError` unless the plan describes a closed storey."""
     for fault in faults(plan):
         raise fault
 
@@ -82,7 +83,8 @@ def _building_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
     yield from _walls_outside(plan)
     yield from _duplicate_walls(plan.walls)
     yield from _open_edges(plan)
-    yield from _caught(lambda: _check_source(plan))
+    for place, name, position in _placed(plan):
+        yield from _caught(partial(_check_transmitter, plan, place, name, position))
     yield from _caught(lambda: _check_start(plan))
 
 
@@ -99,6 +101,7 @@ def _value_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
     yield from _caught(lambda: _check_outline(plan.outline))
     yield from _caught(lambda: check_count(plan.walls, MAX_WALLS, ("walls",)))
     yield from _caught(lambda: _check_points(plan))
+    yield from _caught(lambda: check_transmitters(plan.transmitters))
     for index, wall in enumerate(plan.walls):
         place: Place = ("walls", index)
         for fault in _caught(partial(check_wall, wall, plan.height_m, plan.own_materials, place)):
@@ -137,7 +140,7 @@ def _check_slabs(plan: UncheckedPlan) -> None:
 
 def _check_points(plan: UncheckedPlan) -> None:
     for key, point in (("source", plan.source), ("start", plan.start)):
-        for index, coordinate in enumerate(point):
+        for index, coordinate in enumerate(point or ()):
             check_number(coordinate, COORDINATE, (key, index))
 
 
@@ -231,40 +234,54 @@ def _open_edges(plan: UncheckedPlan) -> Iterator[PlanError]:
                 )
 
 
-def _check_source(plan: UncheckedPlan) -> None:
-    place: Place = ("source",)
-    x, y, z = plan.source
+def _placed(
+    plan: UncheckedPlan,
+) -> Iterator[tuple[Place, str, tuple[float, float, float]]]:
+    """Place in the file, name for messages and position [m] of the source and all transmitters."""
+    if plan.source is not None:
+        yield ("source",), "source", plan.source
+    for index, transmitter in enumerate(plan.transmitters):
+        place: Place = ("transmitters", index, "position")
+        yield place, f"transmitter {transmitter.id!r}", transmitter.position
+
+
+def _check_transmitter(
+    plan: UncheckedPlan, place: Place, name: str, position: tuple[float, float, float]
+) -> None:
+    """Raise for a source or transmitter outside the rooms, or inside a wall."""
+    x, y, z = position
     if not 0 < z < plan.height_m:
         raise PlanError(
-            f"the source is not between floor and ceiling; expected a height above 0 and below "
+            f"the {name} is not between floor and ceiling; expected a height above 0 and below "
             f"{plan.height_m:g} [m]",
             place,
-            plan.source,
+            position,
             at=(x, y),
         )
-    _check_inside(plan, (x, y), "source", plan.source)
+    _check_inside(plan, (x, y), name, place, position)
     if any(low <= z <= high for low, high in solid_heights(plan.walls, (x, y))):
-        raise PlanError(
-            "the source is in a wall; move it into a room", place, plan.source, at=(x, y)
-        )
+        raise PlanError(f"the {name} is in a wall; move it into a room", place, position, at=(x, y))
 
 
 def _check_start(plan: UncheckedPlan) -> None:
     """Raise for a start outside, or inside a wall at every height; a doorway is allowed."""
-    _check_inside(plan, plan.start, "start", plan.start)
-    if not any(complement(solid_heights(plan.walls, plan.start), plan.height_m)):
-        raise PlanError(
-            "the start is in a wall; move it into a room", ("start",), plan.start, at=plan.start
-        )
+    start, place = plan.start, ("start",)
+    if start is None:
+        return
+    _check_inside(plan, start, "start", place, start)
+    if not any(complement(solid_heights(plan.walls, start), plan.height_m)):
+        raise PlanError("the start is in a wall; move it into a room", place, start, at=start)
 
 
-def _check_inside(plan: UncheckedPlan, point: tuple[float, float], key: str, value: object) -> None:
+def _check_inside(
+    plan: UncheckedPlan, point: tuple[float, float], name: str, place: Place, value: object
+) -> None:
     if not plan.outline.covers(Point(point)):
         x_min, y_min, x_max, y_max = plan.bounds
         raise PlanError(
-            f"the {key} is outside the outline, which reaches from ({x_min:g}, {y_min:g}) to "
+            f"the {name} is outside the outline, which reaches from ({x_min:g}, {y_min:g}) to "
             f"({x_max:g}, {y_max:g}); move it into a room",
-            (key,),
+            place,
             value,
             at=point,
         )

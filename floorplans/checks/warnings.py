@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import dist
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 import shapely
@@ -53,10 +53,18 @@ class Finding:
         Where in the building, (x, y) [m]; None if nowhere in particular.
     """
 
+    FLIGHT_KINDS: ClassVar[tuple[str, ...]] = ("start", "start near wall", "no door", "not reached")
+    """Kinds of findings that matter to flights only."""
+
     severity: Severity
     kind: str
     text: str
     at: PlanPoint | None
+
+    @property
+    def concerns(self) -> Literal["map", "flight"]:
+        """Whether it matters to a map, and so to a flight too, or to flights only."""
+        return "flight" if self.kind in self.FLIGHT_KINDS else "map"
 
 
 @dataclass(frozen=True)
@@ -198,16 +206,17 @@ def _no_door(room: Polygon) -> str:
 
 
 def _near_walls(plan: UncheckedPlan) -> Iterator[Finding]:
-    """Yield a source or start too close to a wall."""
-    x, y, z = plan.source
-    for name, point, height_m, least in (
-        ("source", (x, y), z, SOURCE_GAP_M),
-        ("start", plan.start, plan.height_m / 2, START_GAP_M),
-    ):
+    """Yield a source, transmitter or start too close to a wall."""
+    placed = [("transmitter", t.position, SOURCE_GAP_M) for t in plan.transmitters]
+    if plan.source is not None:
+        placed = [("source", plan.source, SOURCE_GAP_M), *placed]
+    if plan.start is not None:
+        placed.append(("start", (*plan.start, plan.height_m / 2), START_GAP_M))
+    for name, (x, y, height_m), least in placed:
         if not 0 <= height_m <= plan.height_m:
             continue
         walls = MultiLineString(list(plan.solid_segments(height_m)))
-        gap = Point(point).distance(walls)
+        gap = Point(x, y).distance(walls)
         if TOLERANCE_M <= gap < least:
             text = f"the {name} is {gap:.4g} m from a wall; keep it at least {least:g} m away"
-            yield Finding("warning", f"{name} near wall", text, point)
+            yield Finding("warning", f"{name} near wall", text, (x, y))

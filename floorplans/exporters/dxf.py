@@ -40,8 +40,12 @@ def render_dxf(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
         _draw_wall(space, wall, strips)
         for opening in wall.openings:
             _insert(space, wall, opening)
-    space.add_point(plan.source, dxfattribs={"layer": "SOURCE"})
-    space.add_point(plan.start, dxfattribs={"layer": "START"})
+    if plan.source is not None:
+        space.add_point(plan.source, dxfattribs={"layer": "SOURCE"})
+    for transmitter in plan.transmitters:
+        space.add_point(transmitter.position, dxfattribs={"layer": "TRANSMITTER"})
+    if plan.start is not None:
+        space.add_point(plan.start, dxfattribs={"layer": "START"})
     text = StringIO()
     document.write(text)
     return {path.name: text.getvalue().encode(document.output_encoding, "dxfreplace")}
@@ -56,7 +60,8 @@ def _add_layers(document: Drawing, plan: FloorPlan) -> None:
     materials = dict.fromkeys(wall.material for wall in plan.walls)
     names = {wall_layer(material): 7 for material in materials}
     names |= {"DOOR": _RED, "DOOR-PASSAGE": _GREEN, "WINDOW": _BLUE, "AXIS": _GREY}
-    for name, colour in {**names, "SOURCE": _MAGENTA, "START": _MAGENTA}.items():
+    names |= dict.fromkeys(("SOURCE", "TRANSMITTER", "START"), _MAGENTA)
+    for name, colour in names.items():
         document.layers.add(name, color=colour)
 
 

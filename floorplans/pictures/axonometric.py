@@ -10,7 +10,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
 from floorplans.mesh import panel_corners, slab_triangles
-from floorplans.pictures.legend import markers, material_handles
+from floorplans.pictures.legend import marker_handles, markers, material_handles
 from floorplans.plan import FloorPlan
 from floorplans.walls import Panel, Wall, panels
 
@@ -84,10 +84,9 @@ def _shade(plan: FloorPlan, wall: Wall, panel: Panel) -> NDArray[np.float64]:
 
 
 def _draw_markers(plan: FloorPlan, ax: Axes3D) -> None:
-    """Draw source and start as pins that extend above the walls."""
+    """Draw source, transmitters and start as pins that extend above the walls."""
     top = MARKER_HEIGHT * plan.height_m
-    feet = (plan.source, (*plan.start, 0.0))
-    for mark, (x, y, z) in zip(markers(), feet, strict=True):
+    for mark, (x, y, z) in markers(plan):
         colour = mark.get_color()
         (stem,) = ax.plot([x, x], [y, y], [z, top], color=colour, lw=1.2, zorder=2)
         (head,) = ax.plot([x], [y], [top], marker=mark.get_marker(), color=colour, zorder=3)
@@ -141,7 +140,7 @@ def _draw_frame_and_legend(plan: FloorPlan, ax: Axes3D) -> None:
     low, high = corners.min(axis=0) - pad, corners.max(axis=0) + pad
     frame = Line2D([low[0], high[0]], [low[1], high[1]], linestyle="none", clip_on=False)
     ax.add_artist(frame)
-    handles = [*markers(), *material_handles(plan)]
+    handles = [*marker_handles(plan), *material_handles(plan)]
     ax.legend(
         handles=handles,
         loc="upper center",

@@ -1,6 +1,7 @@
 """Markers and legend entries that the pictures of a plan share."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -17,14 +18,29 @@ INK = "#222222"
 SOURCE = "#d81b60"
 START = "#1e6fd9"
 
+_MARKERS: dict[str, dict[str, Any]] = {
+    "source": {"marker": "*", "markersize": 15, "color": SOURCE, "label": "source (phone)"},
+    "transmitter": {"marker": "*", "markersize": 12, "color": SOURCE, "label": "transmitter"},
+    "start": {"marker": "o", "markersize": 8, "color": START, "label": "start"},
+}
 
-def markers() -> tuple[Line2D, Line2D]:
-    """Return the markers of source and start, without a position."""
-    source = Line2D([], [], marker="*", markersize=15, color=SOURCE, label="source (phone)")
-    start = Line2D([], [], marker="o", markersize=8, color=START, label="start")
-    for gid, artist in (("source", source), ("start", start)):
-        artist.set(gid=gid, linestyle="none", markeredgecolor="white", zorder=5)
-    return source, start
+
+def markers(plan: FloorPlan) -> Iterator[tuple[Line2D, tuple[float, float, float]]]:
+    """Yield markers of source, transmitters and start, as far as there are, and their places."""
+    placed = [("transmitter", transmitter.position) for transmitter in plan.transmitters]
+    if plan.source is not None:
+        placed.insert(0, ("source", plan.source))
+    if plan.start is not None:
+        placed.append(("start", (*plan.start, 0.0)))
+    for kind, position in placed:
+        artist = Line2D([], [], **_MARKERS[kind])
+        artist.set(gid=kind, linestyle="none", markeredgecolor="white", zorder=5)
+        yield artist, position
+
+
+def marker_handles(plan: FloorPlan) -> list[Artist]:
+    """One marker of each kind that the plan has, for a legend."""
+    return list({artist.get_gid(): artist for artist, _ in markers(plan)}.values())
 
 
 def material_handles(plan: FloorPlan) -> Iterator[Artist]:

@@ -23,6 +23,7 @@ from floorplans.pictures.legend import (
     INK,
     is_low,
     kind_handles,
+    marker_handles,
     markers,
     material_handles,
     plan_openings,
@@ -138,7 +139,7 @@ def _draw_openings(plan: FloorPlan, ax: Axes, strips: WallStrips) -> None:
 
 
 def _draw_markers(plan: FloorPlan, ax: Axes) -> None:
-    for artist, (x, y) in zip(markers(), (plan.source[:2], plan.start), strict=True):
+    for artist, (x, y, _) in markers(plan):
         artist.set_data([x], [y])
         ax.add_line(artist)
 
@@ -174,7 +175,7 @@ def _draw_legend(plan: FloorPlan, ax: Axes) -> None:
     figure = ax.get_figure(root=True)
     assert figure is not None
     below = ScaledTranslation(0, -0.5, figure.dpi_scale_trans)
-    handles = [*markers(), *material_handles(plan), *kind_handles(plan)]
+    handles = [*marker_handles(plan), *material_handles(plan), *kind_handles(plan)]
     ax.legend(
         handles=handles,
         loc="upper center",

@@ -86,8 +86,12 @@ def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) 
     if ceiling:
         slab = slab_triangles(plan.outline, plan.height_m)
         add_triangles(scene, "ceiling", slab, plan.colour_of(plan.ceiling_material), 0.5)
-    add_points(scene, "source", [plan.source], SOURCE)
-    add_points(scene, "start", [(*plan.start, MARKER_RADIUS_M)], START)
+    if plan.source is not None:
+        add_points(scene, "source", [plan.source], SOURCE)
+    if plan.transmitters:
+        add_points(scene, "transmitters", [t.position for t in plan.transmitters], SOURCE)
+    if plan.start is not None:
+        add_points(scene, "start", [(*plan.start, MARKER_RADIUS_M)], START)
     _set_camera(scene)
     return scene
 

@@ -61,6 +61,20 @@ class Table:
         expected = f"[{', '.join(names)}]"
         return _coordinates(self._required(key, expected), names, (*self.place, key))
 
+    def optional_xyz(self, key: str) -> tuple[float, float, float] | None:
+        """Return a point or vector (x, y, z), or None if the key is missing."""
+        if key not in self.data:
+            return None
+        x, y, z = self.coordinates(key, "xyz")
+        return x, y, z
+
+    def optional_xy(self, key: str) -> tuple[float, float] | None:
+        """Return a point (x, y) [m], or None if the key is missing."""
+        if key not in self.data:
+            return None
+        x, y = self.coordinates(key, "xy")
+        return x, y
+
     def points(self, key: str) -> list[tuple[float, float]]:
         """Return a list of points (x, y) [m]."""
         value = self._required(key, "a list of points [x, y]")

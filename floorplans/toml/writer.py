@@ -8,6 +8,7 @@ from shapely.geometry.polygon import LinearRing
 
 from floorplans.georeference import GeoOrigin
 from floorplans.toml.materials import write_materials
+from floorplans.toml.transmitters import write_transmitters
 from floorplans.toml.values import toml_number as _number
 from floorplans.toml.values import toml_text as _text
 from floorplans.unchecked import UncheckedPlan
@@ -23,6 +24,7 @@ def dumps(plan: UncheckedPlan) -> str:
     are left out, and numbers are the shortest that read back exactly.
     """
     blocks = ["\n".join(_top_level(plan)), *write_materials(plan.materials)]
+    blocks += write_transmitters(plan.transmitters)
     blocks += ["\n".join(_wall(wall, plan.height_m)) for wall in plan.walls]
     return "\n\n".join(blocks) + "\n"
 
@@ -35,8 +37,10 @@ def _top_level(plan: UncheckedPlan) -> Iterator[str]:
     yield f"floor_thickness_m = {_number(plan.floor_thickness_m)}"
     yield f"ceiling_material = {_text(plan.ceiling_material)}"
     yield f"ceiling_thickness_m = {_number(plan.ceiling_thickness_m)}"
-    yield f"source = {_point(plan.source)}"
-    yield f"start = {_point(plan.start)}"
+    if plan.source is not None:
+        yield f"source = {_point(plan.source)}"
+    if plan.start is not None:
+        yield f"start = {_point(plan.start)}"
     yield f"outline = {_ring(plan.outline.exterior)}"
     if plan.outline.interiors:
         yield "holes = [" + ", ".join(_ring(hole) for hole in plan.outline.interiors) + "]"

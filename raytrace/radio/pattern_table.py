@@ -11,7 +11,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from raytrace.arrays import Complexes, Floats, Ints
 from raytrace.errors import AntennaError
-from raytrace.radio.antennas import Amplitudes
+from raytrace.radio.antennas import Amplitudes, Antenna
 
 ANGLE_KEYS = ("theta_deg", "phi_deg")
 GAIN_KEYS = ("gain_dbi", "gain_theta_dbi", "gain_phi_dbi")
@@ -84,6 +84,16 @@ class PatternTable:
         amplitude = np.asarray(10.0 ** (np.asarray(gain_dbi) / 20.0), dtype=np.complex128)
         theta, phi = (np.asarray(angle, dtype=np.float64) for angle in (theta_deg, phi_deg))
         return cls(theta, phi, -amplitude, np.zeros_like(amplitude), name)
+
+    @classmethod
+    def of(cls, antenna: Antenna, step_deg: float = 1.0) -> "PatternTable":
+        """Tabulate any antenna; a step [deg] must divide 180 deg."""
+        theta = np.linspace(0.0, 180.0, round(180.0 / step_deg) + 1)
+        phi = np.linspace(0.0, 360.0, round(360.0 / step_deg) + 1)
+        sine = np.sin(np.radians(90.0 - theta))
+        at = np.meshgrid(sine, np.radians(phi), indexing="ij")
+        v, h = (np.asarray(part, dtype=np.complex128) for part in antenna.amplitudes(*at))
+        return cls(theta, phi, -v, h, antenna.describe())
 
     @classmethod
     def from_csv(cls, path: str | Path) -> "PatternTable":

@@ -2,8 +2,9 @@
 
 `x` and `y` are dimension scales [m], so xarray opens a map with coordinates; every dataset has
 `units` and `long_name`. The file's attributes store what made the map; the groups
-`transmit_antenna` and `receive_antenna` store the pattern of an antenna given by a table. Nothing
-that a file says is believed before it is checked.
+`transmit_antenna` and `receive_antenna` store the pattern of an antenna given by a table, or of one
+that this project does not know (see `raytrace.results.antenna_file`). Nothing that a file says is
+believed before it is checked.
 """
 
 from collections.abc import Callable, Mapping
@@ -19,9 +20,16 @@ from atomicfiles import atomic_write
 from raytrace.config import TraceConfig
 from raytrace.errors import MapFileError, MissingMapError
 from raytrace.grid import Grid
-from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
-from raytrace.radio.pattern_table import PatternTable
+from raytrace.radio.antennas import Antenna
 from raytrace.radio.transmitter import Transmitter
+from raytrace.results.antenna_file import (
+    RECEIVE,
+    TRANSMIT,
+    antenna_attributes,
+    read_antenna,
+    read_receive_antenna,
+    write_pattern,
+)
 from raytrace.results.checked_hdf5 import LARGEST, Checked, Hdf5ContentError, open_checked
 from raytrace.results.hdf5 import hdf5_bytes, write_array
 from raytrace.results.hdf5_content import HDF5_SIGNATURE
@@ -31,15 +39,8 @@ FORMAT = "rssnav radio map"
 FORMAT_VERSION = 1
 
 _MARKS = (FORMAT.encode(), b"rss_coherent_dbm")
-_TRANSMIT, _RECEIVE = "transmit_antenna", "receive_antenna"
 _MADE_WITH = "made_with_"
 _SPACING_TOLERANCE = 1e-6  # of a cell
-_PATTERN_ARRAYS = {
-    "theta_deg": ("deg", "angle from the zenith"),
-    "phi_deg": ("deg", "angle from +x towards +y"),
-    "e_theta": ("1", "amplitude along theta-hat, relative to a 0 dBi radiator"),
-    "e_phi": ("1", "amplitude along phi-hat, relative to a 0 dBi radiator"),
-}
 _POSITIVE = float(np.finfo(np.float64).tiny)
 
 
@@ -103,16 +104,8 @@ def _write(radio_map: MapContents, file: h5py.File) -> None:
         data.dims[0].attach_scale(file["y"])
         data.dims[1].attach_scale(file["x"])
     file.attrs.update(attributes_of(radio_map))
-    _save_pattern(radio_map.transmitter.antenna, file, _TRANSMIT)
-    _save_pattern(radio_map.receive_antenna, file, _RECEIVE)
-
-
-def _save_pattern(antenna: Antenna, file: h5py.File, key: str) -> None:
-    """Write the arrays of an antenna that has any."""
-    for name, value in vars(antenna).items():
-        if isinstance(value, np.ndarray):
-            units, long_name = _PATTERN_ARRAYS[name]
-            write_array(file.require_group(key), name, value, units, long_name)
+    write_pattern(radio_map.transmitter.antenna, file, TRANSMIT)
+    write_pattern(radio_map.receive_antenna, file, RECEIVE)
 
 
 def attributes_of(radio_map: MapContents) -> dict[str, Any]:
@@ -128,18 +121,12 @@ def attributes_of(radio_map: MapContents) -> dict[str, Any]:
         "transmitter_position_m": np.array(transmitter.position),
         "transmitter_power_dbm": transmitter.power_dbm,
         "frequency_hz": transmitter.frequency_hz,
-        **_antenna_attributes(_TRANSMIT, transmitter.antenna),
-        **_antenna_attributes(_RECEIVE, radio_map.receive_antenna),
+        **antenna_attributes(TRANSMIT, transmitter.antenna),
+        **antenna_attributes(RECEIVE, radio_map.receive_antenna),
         **asdict(radio_map.config),
         **{f"{_MADE_WITH}{k}": v for k, v in radio_map.provenance.items()},
     }
     return {key: value for key, value in attributes.items() if value is not None}
-
-
-def _antenna_attributes(key: str, antenna: Antenna) -> dict[str, Any]:
-    """Kind and parameters of an antenna, without its arrays."""
-    parameters = {k: v for k, v in vars(antenna).items() if not isinstance(v, np.ndarray)}
-    return {key: type(antenna).__name__, **{f"{key}_{k}": v for k, v in parameters.items()}}
 
 
 def read_map_file(path: Path) -> dict[str, Any]:
@@ -205,7 +192,7 @@ def _read(file: Checked) -> dict[str, Any]:
         "grid": _grid(file),
         **_layers(file),
         "transmitter": _transmitter(file),
-        "receive_antenna": _receive_antenna(file),
+        "receive_antenna": read_receive_antenna(file),
         "config": _config(file),
         "plan_text": file.text("plan_text"),
         "plan_sha256": file.text("plan_sha256"),
@@ -267,35 +254,8 @@ def _transmitter(file: Checked) -> Transmitter:
         (x, y, z),
         file.number("transmitter_power_dbm"),
         file.number("frequency_hz", low=_POSITIVE),
-        _antenna(file, _TRANSMIT),
+        read_antenna(file, TRANSMIT),
     )
-
-
-def _antenna(file: Checked, key: str) -> Antenna:
-    kind = file.text(key)
-    if kind == HalfWaveDipole.__name__:
-        gain_db = file.number(f"{key}_peak_gain_db")
-        if (axis := f"{key}_axis") not in file.attribute_names:
-            return HalfWaveDipole(gain_db)
-        x, y, z = file.numbers(axis, 3)
-        return HalfWaveDipole(gain_db, (x, y, z))
-    if kind == Isotropic.__name__:
-        return Isotropic(file.number(f"{key}_gain_db"))
-    if kind != PatternTable.__name__:
-        raise Hdf5ContentError(f"attribute {key!r}: {kind!r} is not an antenna of a map file")
-    pattern = file.within(key)
-    return PatternTable(
-        pattern.array("theta_deg", np.float64, ("n_theta",)),
-        pattern.array("phi_deg", np.float64, ("n_phi",)),
-        pattern.array("e_theta", np.complex128, ("n_theta", "n_phi")),
-        pattern.array("e_phi", np.complex128, ("n_theta", "n_phi")),
-        file.text(f"{key}_name"),
-    )
-
-
-def _receive_antenna(file: Checked) -> Antenna:
-    """The receivers' antenna; the default one in a file that was written before it was stored."""
-    return _antenna(file, _RECEIVE) if _RECEIVE in file.attribute_names else HalfWaveDipole()
 
 
 def _provenance(file: Checked) -> dict[str, Any]:

@@ -65,9 +65,9 @@ def examine(as_json: Json = False) -> None:
 def _tracer_faults() -> list[str]:
     """Trace a box: line of sight as in free space, and six first-order images."""
     plan = floorplans.loads(BOX)
-    x, y, z = plan.source
+    x, y, z = source = plan.require_source()
     receiver = np.array([[x + 4.0, y, z]])
-    transmitter = Transmitter(plan.source)
+    transmitter = Transmitter(source)
     paths = trace_paths(scene_of(plan), transmitter, receiver, TraceConfig(1, 0))
     faults: list[str] = []
     if len(paths) != 7:

@@ -141,7 +141,7 @@ def _trace(
     """All paths to a receiver, strongest first."""
     if not tracer_cache().n_compiled:
         note(COMPILING)
-    source = Transmitter(plan.source, POWER_DBM, FREQUENCY_HZ)
+    source = Transmitter(plan.require_source(), POWER_DBM, FREQUENCY_HZ)
     try:
         scene, receivers = scene_of(plan, edition), np.array([to])
         return trace_paths(scene, source, receivers, config, max_memory_bytes=max_memory_bytes)

@@ -64,7 +64,8 @@ def check(
 ) -> None:
     """Check a plan: the file, the walls, the rooms, and whether the source can be reached.
 
-    Reports all findings with coordinates. Warnings are for you to judge; errors give exit code 1.
+    Reports all findings with coordinates, and what concerns a map apart from what concerns a
+    flight. Warnings are for you to judge; errors give exit code 1.
     """
     if output is not None and not fix:
         raise typer.BadParameter("only --fix writes a file.", param_hint="--output")
@@ -97,11 +98,11 @@ def _safe_repair(plan: UncheckedPlan) -> RepairedPlan:
 
 
 def _is_usable(plan: UncheckedPlan) -> bool:
-    """Whether a plan has no errors and its source can be reached."""
+    """Whether a plan has no errors, and its source can be reached if it has one."""
     try:
         checked = FloorPlan.of(plan)
         scene_of(checked)
-        reach_by_speed(checked)
+        _flights(checked)
     except (PlanError, SceneError, WorldError):
         return False
     return True
@@ -133,13 +134,14 @@ def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool)
     if not errors:
         checked = FloorPlan.of(file.plan)
         scene_of(checked)
-        flights = reach_by_speed(checked)
+        flights = _flights(checked)
+        findings = [f for f in findings if flights or f.concerns == "map"]
         findings += [finding for reach in flights if (finding := unreached(reach)) is not None]
         summary |= summary_of(checked)
     if as_json:
         report = {
             "flights": [_row(reach) for reach in flights],
-            "findings": [asdict(finding) for finding in findings],
+            "findings": [{**asdict(f), "concerns": f.concerns} for f in findings],
             "changes": [asdict(change) for change in changes],
         }
         print_json(summary | report)
@@ -147,7 +149,7 @@ def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool)
         if len(findings) > 1:
             _print_findings(findings)
     else:
-        _print_flights(FloorPlan.of(file.plan), flights, findings)
+        _print_checked(FloorPlan.of(file.plan), flights, findings)
         say(f"\n{plan} is valid{_warnings_text(len(findings))}")
     if errors:
         _fail(file, plan)
@@ -165,6 +167,11 @@ def _warnings_text(n_warnings: int) -> str:
     return f", but see {n_warnings} warning{'s' if n_warnings > 1 else ''} above"
 
 
+def _flights(plan: FloorPlan) -> tuple[Reach, ...]:
+    """What a flight can reach; empty for a plan without source or start."""
+    return () if plan.source is None or plan.start is None else reach_by_speed(plan)
+
+
 def _row(reach: Reach) -> dict[str, Any]:
     return {
         "speed": reach.speed,
@@ -175,9 +182,24 @@ def _row(reach: Reach) -> dict[str, Any]:
     }
 
 
-def _print_flights(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence[Finding]) -> None:
+def _print_checked(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence[Finding]) -> None:
+    """Print what concerns a map, and what concerns a flight only."""
     print_summary(plan)
-    say("\nshortest flight from the start to the source")
+    for_map = [finding for finding in findings if finding.concerns == "map"]
+    if for_map:
+        say("\nfor a map")
+        _print_findings(for_map)
+    say("\nfor a flight")
+    if flights:
+        _print_flights(flights)
+        _print_findings([finding for finding in findings if finding.concerns == "flight"])
+    else:
+        missing = " and no ".join(k for k in ("source", "start") if getattr(plan, k) is None)
+        say(f"not checked: the plan has no {missing}")
+
+
+def _print_flights(flights: Sequence[Reach]) -> None:
+    say("shortest flight from the start to the source")
     print_table(
         (">speed", ">steps", ">length", ""),
         [
@@ -187,13 +209,12 @@ def _print_flights(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence
             for f in flights
         ],
     )
-    if findings:
-        print()
-        _print_findings(findings)
 
 
 def _print_findings(findings: Sequence[Finding]) -> None:
     """Print a table on a terminal, otherwise a line per finding."""
+    if not findings:
+        return
     console = Console()
     if not console.is_terminal:
         for f in findings:

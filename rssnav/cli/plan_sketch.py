@@ -18,7 +18,7 @@ MAX_COLUMNS = 120
 
 
 def sketch(plan: FloorPlan, columns: int | None = None) -> str:
-    """Draw what is solid 1 m above the floor, with S at the source and U at the start.
+    """Draw what is solid 1 m above the floor, with T, S and U at transmitters, source and start.
 
     Parameters
     ----------
@@ -49,11 +49,22 @@ def sketch(plan: FloorPlan, columns: int | None = None) -> str:
         inside = np.minimum(line, np.array(dots.shape) - 1)
         dots[inside[:, 0], inside[:, 1]] = True
     characters = _characters(dots)
-    for mark, point in (("S", plan.source[:2]), ("U", plan.start)):
+    marks = _marks(plan)
+    for mark, _, point in marks:
         row, column = dot_of(np.array([point]))[0]
         characters[row // DOTS_DOWN][column // DOTS_ACROSS] = mark
-    legend = "S source, U where the UAV starts"
+    legend = ", ".join(dict.fromkeys(f"{mark} {meaning}" for mark, meaning, _ in marks))
     return "\n".join(["".join(line).rstrip() for line in characters] + [legend])
+
+
+def _marks(plan: FloorPlan) -> list[tuple[str, str, tuple[float, float]]]:
+    """Letter, meaning and place (x, y) [m] of transmitters, source and start; the last on top."""
+    marks = [("T", "transmitter", t.position[:2]) for t in plan.transmitters]
+    if plan.source is not None:
+        marks.append(("S", "source", plan.source[:2]))
+    if plan.start is not None:
+        marks.append(("U", "where the UAV starts", plan.start))
+    return marks
 
 
 def _characters(dots: NDArray[np.bool_]) -> list[list[str]]:

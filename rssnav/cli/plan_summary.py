@@ -1,5 +1,6 @@
 """Properties of a plan, in a few lines or as JSON."""
 
+from dataclasses import asdict
 from typing import Any
 
 from floorplans import FloorPlan
@@ -18,6 +19,7 @@ def summary_of(plan: FloorPlan) -> dict[str, Any]:
         "materials": _materials(plan),
         "source_m": plan.source,
         "start_m": plan.start,
+        "transmitters": [asdict(transmitter) for transmitter in plan.transmitters],
         "sha256": plan.sha256,
     }
 
@@ -30,8 +32,12 @@ def print_summary(plan: FloorPlan) -> None:
             ("size", f"{size_text(plan)}, {plan.height_m:g} m high, {plan.outline.area:g} m²"),
             ("walls", f"{len(plan.walls)} straight pieces with {count_openings(plan)} openings"),
             ("materials", ", ".join(_materials(plan))),
-            ("source", f"{point_text(plan.source)} m"),
-            ("start", f"{point_text(plan.start)} m"),
+            *((f"transmitter {t.id}", f"{point_text(t.position)} m") for t in plan.transmitters),
+            *(
+                (name, f"{point_text(place)} m")
+                for name, place in (("source", plan.source), ("start", plan.start))
+                if place is not None
+            ),
         ]
     )
 
@@ -52,6 +58,8 @@ def size_text(plan: FloorPlan) -> str:
     return f"{x_max - x_min:g} x {y_max - y_min:g} m"
 
 
-def point_text(point: tuple[float, ...]) -> str:
-    """Write a point [m] in the fewest digits."""
+def point_text(point: tuple[float, ...] | None) -> str:
+    """Write a point [m] in the fewest digits; "-" for none."""
+    if point is None:
+        return "-"
     return f"({', '.join(f'{c:g}' for c in point)})"

@@ -353,7 +353,7 @@ def _tooltips(radio_map: RadioMap) -> list[tuple[str, str]]:
 
 def _mark_positions(plan: FloorPlan) -> tuple[tuple[float, float], tuple[float, float]]:
     """Positions (x, y) [m] of source and start."""
-    return plan.source[:2], plan.start
+    return plan.require_source()[:2], plan.require_start()
 
 
 def _mark_columns(plan: FloorPlan) -> dict[str, Any]:

@@ -118,8 +118,9 @@ class PlanPanel:
             return
         source_z_m, frequency_ghz = values.pop("source_z_m"), values.pop("frequency_ghz")
         session = self._session
-        if source_z_m != session.plan.source[2]:
-            session.move_source(*session.plan.source[:2], source_z_m)
+        x, y, z = session.plan.require_source()
+        if source_z_m != z:
+            session.move_source(x, y, source_z_m)
         session.change_settings(
             replace(session.settings, frequency_hz=frequency_ghz * GIGA, **values)
         )
@@ -130,7 +131,7 @@ def _values(plan: FloorPlan, settings: MapSettings) -> dict[str, float]:
     return {
         "cell_size_m": settings.cell_size_m,
         "height_m": settings.height_m,
-        "source_z_m": plan.source[2],
+        "source_z_m": plan.require_source()[2],
         "max_reflections": settings.max_reflections,
         "power_dbm": settings.power_dbm,
         "frequency_ghz": settings.frequency_hz / GIGA,

@@ -12,6 +12,7 @@ from raytrace import Grid, RadioMap
 from rssnav.explorer.background import NewestOnly, Ticket
 from rssnav.explorer.fair_turns import FairTurns, TabTurns
 from rssnav.explorer.limits import Limits
+from rssnav.explorer.places import with_source_and_start
 from rssnav.explorer.tracing import (
     LatestScene,
     MapCache,
@@ -99,6 +100,7 @@ class Session:
             For a plan that is too large; the previous one stays open.
         """
         self.limits.check_plan(plan)
+        plan = with_source_and_start(plan)
         height_m = self.settings.height_m
         if not height_m < plan.height_m:
             height_m = round(plan.height_m / 2, PLACE_DIGITS)
@@ -140,11 +142,11 @@ class Session:
 
     def preview_source(self, x: float, y: float) -> None:
         """Trace the reflections of a source that is being dragged, if it can be there."""
-        self.maps.preview(self.plan, self.settings, (x, y, self.plan.source[2]))
+        self.maps.preview(self.plan, self.settings, (x, y, self.plan.require_source()[2]))
 
     def move_source(self, x: float, y: float, z: float | None = None) -> None:
         """Move the source [m], if it can be there, and trace the map."""
-        height_m = self.plan.source[2] if z is None else z
+        height_m = self.plan.require_source()[2] if z is None else z
         source = (round(x, PLACE_DIGITS), round(y, PLACE_DIGITS), height_m)
         before = self.plan
         self._try(lambda: self._replace_plan(replace(before, source=source)))
@@ -228,7 +230,7 @@ class Session:
 
     def _snap_start(self) -> None:
         """Move the start to a cell centre, if the plan allows it."""
-        start = _nearest(self.grid, *self.plan.start)
+        start = _nearest(self.grid, *self.plan.require_start())
         if start != self.plan.start:
             self._try(lambda: self._replace_plan(replace(self.plan, start=start)))
 

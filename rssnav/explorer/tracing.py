@@ -68,7 +68,7 @@ class MapSettings:
 
     def transmitter(self, plan: FloorPlan) -> Transmitter:
         """Transmitter at the plan's source."""
-        return Transmitter(plan.source, self.power_dbm, self.frequency_hz)
+        return Transmitter(plan.require_source(), self.power_dbm, self.frequency_hz)
 
 
 @dataclass(frozen=True, eq=False)

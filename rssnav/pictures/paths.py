@@ -18,7 +18,7 @@ from floorplans.pictures.viewer_3d import ColourBar, add_lines, add_points, plan
 from raytrace import Paths
 from raytrace.kernels.path_points import DIFFRACTION, REFLECTION
 from rssnav.pictures.radio_map import draw_walls, plan_height_in, plan_width_in, set_limits
-from rssnav.pictures.style import INK, draw_source, save_picture, styled
+from rssnav.pictures.style import INK, draw_transmitter, save_picture, styled
 
 COLOUR_MAP = "plasma_r"
 """Strong paths are dark: they must stand out on a light background."""
@@ -71,7 +71,8 @@ def draw_paths(plan: FloorPlan, paths: Paths, power_dbm: float, ax: Axes) -> Sca
     weakest_first.set_gid("paths")
     ax.add_collection(weakest_first, autolim=False)
     _draw_interactions(paths, powers, scale, ax)
-    draw_source(ax, plan)
+    position = _position(paths.vertices[0, 0])
+    draw_transmitter(ax, position, "source" if position == plan.source else "transmitter")
     x, y = paths.vertices[0, -1, :2]
     ax.plot(
         [x], [y], "^", color=RECEIVER, markeredgecolor="white", markersize=8, zorder=7,
@@ -81,6 +82,11 @@ def draw_paths(plan: FloorPlan, paths: Paths, power_dbm: float, ax: Axes) -> Sca
     ax.set_aspect("equal")
     ax.set(xlabel="$x$ [m]", ylabel="$y$ [m]")
     return weakest_first
+
+
+def _position(vertex: NDArray[np.float64]) -> tuple[float, float, float]:
+    x, y, z = vertex.tolist()
+    return x, y, z
 
 
 def _draw_interactions(

@@ -1,4 +1,4 @@
-"""A radio map as a picture: RSS in colour over the plan's walls, source and start.
+"""A radio map as a picture: RSS in colour over the plan's walls, transmitter and start.
 
 Cells without a path are hatched, so that they are not mistaken for a weak signal. Walls that are
 solid at the receivers' height are dark; openings and low walls are light.
@@ -26,8 +26,8 @@ from rssnav.pictures.style import (
     INK,
     PAGE_IN,
     draw_cells,
-    draw_source,
     draw_start,
+    draw_transmitter,
     save_picture,
     styled,
 )
@@ -53,7 +53,7 @@ def draw_radio_map(
     *,
     rss_range_dbm: tuple[float, float] | None = None,
 ) -> AxesImage:
-    """Draw a radio map, its plan's walls, the source and the start.
+    """Draw a radio map, its plan's walls, its transmitter and the start.
 
     Parameters
     ----------
@@ -79,8 +79,10 @@ def draw_radio_map(
     if uncovered.any():
         _hatch_cells(radio_map.grid, uncovered, ax)
     draw_walls(plan, radio_map.grid.height_m, ax)
-    draw_source(ax, plan)
-    draw_start(ax, plan)
+    position = radio_map.transmitter.position
+    draw_transmitter(ax, position, "source" if position == plan.source else "transmitter")
+    if plan.start is not None:
+        draw_start(ax, plan)
     set_limits(plan, ax)
     return image
 

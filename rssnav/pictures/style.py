@@ -257,26 +257,34 @@ def draw_solid_walls(ax: Axes, plan: FloorPlan, height_m: float) -> None:
 
 
 def draw_source(ax: Axes, plan: FloorPlan) -> Line2D:
-    """Mark the source with a star."""
+    """Mark the source of a plan with a star."""
+    return draw_transmitter(ax, plan.require_source(), "source")
+
+
+def draw_transmitter(ax: Axes, position: tuple[float, float, float], label: str) -> Line2D:
+    """Mark a position [m] with the star of sources and transmitters."""
     (mark,) = ax.plot(
-        *[[c] for c in plan.source[:2]],
+        [position[0]],
+        [position[1]],
         marker="*",
         markersize=9,
         color=SOURCE,
         markeredgecolor="white",
         markeredgewidth=0.7,
         linestyle="none",
-        label="source",
+        label=label,
         zorder=5,
-        gid="source",
+        gid=label,
     )
     return mark
 
 
 def draw_start(ax: Axes, plan: FloorPlan) -> Line2D:
-    """Mark the start with a ring."""
+    """Mark the start of a plan with a ring."""
+    x, y = plan.require_start()
     (mark,) = ax.plot(
-        *[[c] for c in plan.start],
+        [x],
+        [y],
         marker="o",
         markersize=5,
         color=START,

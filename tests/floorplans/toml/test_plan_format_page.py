@@ -14,6 +14,7 @@ from floorplans.loading import (
     PLAN_KEYS,
     WALL_KEYS,
 )
+from floorplans.toml.transmitters import TRANSMITTER_KEYS
 
 PAGE = (ROOT / "docs" / "plan_format.md").read_text(encoding="utf-8")
 
@@ -32,6 +33,7 @@ def test_example_is_a_plan_that_uses_every_key() -> None:
     assert set(PLAN_KEYS) - set(table) == {"floor_thickness_m"}
     assert set(table["defaults"]) == set(DEFAULTS_KEYS)
     assert set(table["origin"]) == set(ORIGIN_KEYS)
+    assert {key for row in table["transmitters"] for key in row} == set(TRANSMITTER_KEYS)
     assert {key for wall in table["walls"] for key in wall} == set(WALL_KEYS)
     assert {key for opening in openings for key in opening} == set(OPENING_KEYS)
 
@@ -44,7 +46,7 @@ def test_offsets_of_the_example_lie_where_its_comment_says() -> None:
     assert [o.kind for o in north.openings] == ["window"]
 
 
-KEYS = (*PLAN_KEYS, *ORIGIN_KEYS, *WALL_KEYS, *OPENING_KEYS)
+KEYS = (*PLAN_KEYS, *ORIGIN_KEYS, *TRANSMITTER_KEYS, *WALL_KEYS, *OPENING_KEYS)
 
 
 @pytest.mark.parametrize("word", [*KEYS, *floorplans.MATERIALS])

@@ -1,7 +1,7 @@
 """A map file is whole or it is refused, and opens without this project."""
 
 import os
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import h5py
@@ -20,6 +20,9 @@ from raytrace import (
     TraceConfig,
     Transmitter,
 )
+from raytrace.arrays import Floats
+from raytrace.radio.antennas import Amplitudes
+from raytrace.results.antenna_file import as_stored
 from raytrace.results.layers import LAYERS
 
 REQUIRED = ("rss_dbm", "rss_coherent_dbm", "path_count")
@@ -72,6 +75,43 @@ def test_a_map_comes_back_as_it_was(tmp_path: Path, antenna: Antenna) -> None:
         assert getattr(first, name) == getattr(second, name)
     for name in ("height_m", "cell_size_m"):
         assert getattr(first.grid, name) == getattr(second.grid, name)
+
+
+@dataclass(frozen=True)
+class Cardioid:
+    """An antenna that the project does not know."""
+
+    azimuth_deg: float
+
+    def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
+        around = 1.0 + np.cos(azimuth - np.radians(self.azimuth_deg)) * np.sqrt(1.0 - sine**2)
+        return Amplitudes(0.7 * around, 0.2j * around * sine)
+
+    def describe(self) -> str:
+        return f"cardioid towards {self.azimuth_deg:g} deg"
+
+
+def test_an_unknown_antenna_comes_back_as_its_pattern(tmp_path: Path) -> None:
+    first, antenna = small_map(), Cardioid(70.0)
+    first = replace(first, transmitter=replace(first.transmitter, antenna=antenna))
+    first.save(tmp_path / "map.h5")
+    read = RadioMap.load(tmp_path / "map.h5").transmitter.antenna
+    assert isinstance(read, PatternTable)
+    assert read.name == antenna.describe()
+    assert read == as_stored(antenna)
+    rng = np.random.default_rng(53)
+    at = rng.uniform(-1.0, 1.0, 500), rng.uniform(-4.0, 7.0, 500)
+    for found, expected in zip(read.amplitudes(*at), antenna.amplitudes(*at), strict=True):
+        np.testing.assert_allclose(found, expected, atol=1e-3)
+
+
+def test_both_antennas_may_have_tables_of_different_sizes(tmp_path: Path) -> None:
+    first = small_map()
+    tables = [PatternTable.of(HalfWaveDipole(axis=(1.0, 0.0, 0.5)), step) for step in (2.0, 5.0)]
+    transmitter = replace(first.transmitter, antenna=tables[0])
+    replace(first, transmitter=transmitter, receive_antenna=tables[1]).save(tmp_path / "map.h5")
+    read = RadioMap.load(tmp_path / "map.h5")
+    assert [read.transmitter.antenna, read.receive_antenna] == tables
 
 
 def test_plain_hdf5_shows_units_names_and_coordinates(saved: Path) -> None:

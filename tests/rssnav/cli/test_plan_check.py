@@ -28,6 +28,23 @@ def test_new_plan_passes_the_check_and_is_not_overwritten(tmp_path) -> None:
     assert floorplans.load(target).bounds == (0.0, 0.0, 7.0, 6.5)
 
 
+def test_what_concerns_a_map_is_apart_from_what_concerns_a_flight(tmp_path) -> None:
+    closet = ROOM + f'\n[[walls]]\npoints = {CLOSET}\nmaterial = "wood"\nthickness_m = 0.1\n'
+    text = done("plan", "check", room_file(tmp_path, closet))
+    before, after = text.split("\nfor a flight\n")
+    assert "no door" in after
+    assert "no door" not in before
+    without = "".join(
+        line for line in closet.splitlines(keepends=True) if not line.startswith("start")
+    )
+    text = done("plan", "check", room_file(tmp_path, without))
+    assert "not checked: the plan has no start" in text
+    assert text.endswith("is valid\n")
+    report = json.loads(done("plan", "check", room_file(tmp_path, without), "--json"))
+    assert report["start_m"] is None
+    assert report["flights"] == report["findings"] == []
+
+
 @pytest.mark.parametrize("size", ["40", "40xx25", "4x25", "40x2500"])
 def test_size_that_is_none_is_wrong_usage(tmp_path, size) -> None:
     assert run("plan", "new", "--size", size, "-o", tmp_path / "my.toml").exit_code == 2

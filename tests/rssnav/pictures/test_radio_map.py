@@ -68,6 +68,15 @@ def test_cell_without_a_path_is_hatched_and_has_no_colour(plan, with_a_dark_cell
     assert cell.get_extents().bounds == (4.0, 2.0, 1.0, 1.0)
 
 
+def test_the_star_is_at_the_transmitter_of_the_map(plan, whole) -> None:
+    moved = replace(whole, transmitter=replace(whole.transmitter, position=(1.25, 2.5, 1.0)))
+    ax = Figure().add_subplot()
+    draw_radio_map(replace(plan, start=None), moved, ax)
+    marks = by_gid(ax)
+    assert marks["transmitter"].get_xydata().tolist() == [[1.25, 2.5]]
+    assert not {"source", "start"} & set(marks)
+
+
 def test_source_start_and_walls_are_where_the_plan_has_them(plan, whole) -> None:
     ax = Figure().add_subplot()
     draw_radio_map(plan, whole, ax)

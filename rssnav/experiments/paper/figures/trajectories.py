@@ -55,7 +55,7 @@ def draw(data: PaperData) -> Figure:
 def _draw_median_flight(ax: Axes, data: PaperData, scenario: int, agent: AgentName) -> None:
     """Draw the median run's flight and the target zone."""
     result = data.result(scenario, agent, SPEED)
-    x, y, _ = data.scenarios[scenario].plan.source
+    x, y, _ = data.scenarios[scenario].plan.require_source()
     angle = np.linspace(0.0, 2.0 * np.pi, 73)
     ax.plot(
         x + GOAL_DISTANCE_M * np.cos(angle),

@@ -1,0 +1,76 @@
+"""Antennas in map files: by name and parameters where they are known, otherwise as a table."""
+
+from typing import Any
+
+import h5py
+import numpy as np
+
+from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
+from raytrace.radio.pattern_table import PatternTable
+from raytrace.results.checked_hdf5 import Checked, Hdf5ContentError
+from raytrace.results.hdf5 import write_array
+
+TRANSMIT, RECEIVE = "transmit_antenna", "receive_antenna"
+"""Prefixes of an antenna's attributes, and names of the groups of their arrays."""
+
+_NAMED = (HalfWaveDipole, Isotropic, PatternTable)
+_PATTERN_ARRAYS = {
+    "theta_deg": ("deg", "angle from the zenith"),
+    "phi_deg": ("deg", "angle from +x towards +y"),
+    "e_theta": ("1", "amplitude along theta-hat, relative to a 0 dBi radiator"),
+    "e_phi": ("1", "amplitude along phi-hat, relative to a 0 dBi radiator"),
+}
+
+
+def as_stored(antenna: Antenna) -> Antenna:
+    """Return an antenna as a file gives it back: an unknown one as a `PatternTable`."""
+    return antenna if type(antenna) in _NAMED else PatternTable.of(antenna)
+
+
+def antenna_attributes(key: str, antenna: Antenna) -> dict[str, Any]:
+    """Return kind and parameters of an antenna, without its arrays, as attributes."""
+    stored = as_stored(antenna)
+    parameters = {k: v for k, v in vars(stored).items() if not isinstance(v, np.ndarray)}
+    return {key: type(stored).__name__, **{f"{key}_{k}": v for k, v in parameters.items()}}
+
+
+def write_pattern(antenna: Antenna, file: h5py.Group, key: str) -> None:
+    """Write the arrays of an antenna that has any."""
+    for name, value in vars(as_stored(antenna)).items():
+        if isinstance(value, np.ndarray):
+            units, long_name = _PATTERN_ARRAYS[name]
+            write_array(file.require_group(key), name, value, units, long_name)
+
+
+def read_antenna(file: Checked, key: str) -> Antenna:
+    """Read an antenna.
+
+    Raises
+    ------
+    Hdf5ContentError
+        Where it is no antenna of a map file, or its parameters are wrong.
+    """
+    kind = file.text(key)
+    if kind == HalfWaveDipole.__name__:
+        gain_db = file.number(f"{key}_peak_gain_db")
+        if (axis := f"{key}_axis") not in file.attribute_names:
+            return HalfWaveDipole(gain_db)
+        x, y, z = file.numbers(axis, 3)
+        return HalfWaveDipole(gain_db, (x, y, z))
+    if kind == Isotropic.__name__:
+        return Isotropic(file.number(f"{key}_gain_db"))
+    if kind != PatternTable.__name__:
+        raise Hdf5ContentError(f"attribute {key!r}: {kind!r} is not an antenna of a map file")
+    pattern, sizes = file.within(key), (f"{key}.n_theta", f"{key}.n_phi")
+    return PatternTable(
+        pattern.array("theta_deg", np.float64, sizes[:1]),
+        pattern.array("phi_deg", np.float64, sizes[1:]),
+        pattern.array("e_theta", np.complex128, sizes),
+        pattern.array("e_phi", np.complex128, sizes),
+        file.text(f"{key}_name"),
+    )
+
+
+def read_receive_antenna(file: Checked) -> Antenna:
+    """Read the receivers' antenna; the default one in a file of before it was stored."""
+    return read_antenna(file, RECEIVE) if RECEIVE in file.attribute_names else HalfWaveDipole()
