@@ -7,12 +7,14 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from floorplans.errors import Place
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import MATERIAL_COLOURS, OWN_COLOUR, Own, PlanMaterial, by_name
+from floorplans.solid_regions import SolidRegion, solid_regions
 from floorplans.transmitters import PlanTransmitter
 from floorplans.walls import Wall, solid_segments
 
@@ -73,6 +75,32 @@ class UncheckedPlan:
         if not 0 <= height_m <= self.height_m:
             raise ValueError(f"height_m = {height_m:g}: expected 0 to {self.height_m:g} [m]")
         return solid_segments(self.walls, height_m)
+
+    @cached_property
+    def solid_regions(self) -> tuple[SolidRegion, ...]:
+        """Columns and shafts, which count as solid; see `floorplans.solid_regions`."""
+        return solid_regions(self.walls)
+
+    def contains(self, points: NDArray[np.float64], height_m: float) -> NDArray[np.bool_]:
+        """Whether points lie inside the building, and in no column or shaft.
+
+        Parameters
+        ----------
+        points : (n, 2) float64
+            In the plan view, (x, y) [m].
+        height_m : float
+            Of all points above the floor [m].
+
+        Returns
+        -------
+        (n,) bool
+        """
+        shapely.prepare(self.outline)
+        inside = np.array(shapely.contains_xy(self.outline, points), dtype=np.bool_)
+        for region in self.solid_regions:
+            if height_m <= region.top_m:
+                inside &= ~np.array(shapely.contains_xy(region.polygon, points), dtype=np.bool_)
+        return inside
 
     def layer_heights(self) -> tuple[float, ...]:
         """One height [m] in each horizontal layer of constant plan view."""

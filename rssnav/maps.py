@@ -5,6 +5,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 import floorplans
 from floorplans import FloorPlan
 from raytrace import (
@@ -96,7 +99,13 @@ class MapRequest:
             )
         except SceneError as error:
             raise SceneError(f"plan {self.plan.name!r}: {error}") from error
-        return radio_map.with_plan(floorplans.dumps(self.plan), self.plan.sha256)
+        inside = cells_inside(self.plan, self.grid)
+        return radio_map.covering(inside).with_plan(floorplans.dumps(self.plan), self.plan.sha256)
+
+
+def cells_inside(plan: FloorPlan, grid: Grid) -> NDArray[np.bool_]:
+    """Which cells of a grid have their centre inside the building, and in no column; (n_y, n_x)."""
+    return plan.contains(grid.points()[:, :2], grid.height_m).reshape(grid.shape)
 
 
 def make_map(

@@ -12,7 +12,7 @@ from scipy import ndimage
 from floorplans import FloorPlan
 from floorplans.checks.inspection import Finding
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
-from rssnav.maps import CELL_SIZE_M, HEIGHT_M
+from rssnav.maps import CELL_SIZE_M, HEIGHT_M, cells_inside
 from rssnav.optimal_flights import shortest_path
 from rssnav.world import GOAL_DISTANCE_M, GridWorld
 
@@ -99,9 +99,9 @@ def _missed(plan: FloorPlan, world: GridWorld, grid: Grid) -> tuple[NDArray[np.f
     on_lattice = ((i_x - start_x) % world.speed == 0) & ((i_y - start_y) % world.speed == 0)
     x, y = np.meshgrid(grid.x, grid.y)
     walls = shapely.multilinestrings(list(plan.solid_segments(grid.height_m)))
-    centres = shapely.points(x, y)
-    inside = shapely.contains_xy(plan.outline, x, y) & ~shapely.dwithin(centres, walls, 1e-6)
-    free = inside & on_lattice
+    free = (
+        cells_inside(plan, grid) & ~shapely.dwithin(shapely.points(x, y), walls, 1e-6) & on_lattice
+    )
     missed = free.copy()
     missed[tuple(world.cell.T)] = False
     return np.column_stack([x[missed], y[missed]]), int(free.sum())

@@ -261,6 +261,7 @@ def _check_transmitter(
     _check_inside(plan, (x, y), name, place, position)
     if any(low <= z <= high for low, high in solid_heights(plan.walls, (x, y))):
         raise PlanError(f"the {name} is in a wall; move it into a room", place, position, at=(x, y))
+    _check_not_solid(plan, (x, y), z, name, place, position)
 
 
 def _check_start(plan: UncheckedPlan) -> None:
@@ -271,6 +272,26 @@ def _check_start(plan: UncheckedPlan) -> None:
     _check_inside(plan, start, "start", place, start)
     if not any(complement(solid_heights(plan.walls, start), plan.height_m)):
         raise PlanError("the start is in a wall; move it into a room", place, start, at=start)
+    _check_not_solid(plan, start, plan.height_m, "start", place, start)
+
+
+def _check_not_solid(
+    plan: UncheckedPlan,
+    point: tuple[float, float],
+    height_m: float,
+    name: str,
+    place: Place,
+    value: object,
+) -> None:
+    for region in plan.solid_regions:
+        if height_m <= region.top_m and region.polygon.covers(Point(point)):
+            raise PlanError(
+                f"the {name} is in a column or shaft: walls without an opening enclose "
+                f"{region.polygon.area:.3g} m² around it; move it into a room",
+                place,
+                value,
+                at=point,
+            )
 
 
 def _check_inside(

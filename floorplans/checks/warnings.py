@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiLineString, Point, Polygon
 
 from floorplans.errors import format_place
+from floorplans.solid_regions import faces_of
 from floorplans.unchecked import PlanFile, UncheckedPlan
 from floorplans.walls import TOLERANCE_M, Wall, centre_lines
 from floorplans.walls import Point as PlanPoint
@@ -177,7 +178,6 @@ def _walls_in_openings(walls: _Walls) -> Iterator[Finding]:
 def _slivers_and_closed_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
     """Yield regions too narrow to be rooms, and rooms without a door."""
     separating = [wall for wall in plan.walls if wall.height_m >= min(ROOM_WALL_M, plan.height_m)]
-    noded = shapely.union_all(centre_lines(separating))
     doors = [
         Point(wall.point_at(opening.offset_m + opening.width_m / 2))
         for wall in separating
@@ -185,7 +185,8 @@ def _slivers_and_closed_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
         if opening.kind != "window"
     ]
     tree = shapely.STRtree(np.array(doors, dtype=np.object_))
-    for room in shapely.get_parts(shapely.polygonize(shapely.get_parts(noded))):
+    solid = shapely.STRtree([region.polygon for region in plan.solid_regions])
+    for room in faces_of(separating):
         inner = room.representative_point()
         at = (float(inner.x), float(inner.y))
         if not plan.outline.contains(inner):
@@ -193,6 +194,8 @@ def _slivers_and_closed_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
         if room.buffer(-SLIVER_M / 2).is_empty:
             text = f"a sliver of {room.area:.3g} m² between walls; merge them into one wall"
             yield Finding("warning", "sliver", text, at)
+        elif len(solid.query(inner, predicate="within")):
+            continue
         elif not len(tree.query(room, predicate="dwithin", distance=1e-4)):
             yield Finding("warning", "no door", _no_door(room), at)
 

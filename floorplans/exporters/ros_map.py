@@ -89,7 +89,7 @@ def _pixels(
 
 
 def _bodies(plan: FloorPlan, height_m: float, pixel_m: float) -> list[BaseGeometry]:
-    """Solid sections of walls, at least as thick as a pixel's diagonal; corners filled."""
+    """Solid sections of walls, at least as thick as a pixel's diagonal, and columns."""
     n_ends = Counter(end for wall in plan.walls for end in (wall.start, wall.end))
     bodies: list[BaseGeometry] = []
     for wall in plan.walls:
@@ -100,7 +100,7 @@ def _bodies(plan: FloorPlan, height_m: float, pixel_m: float) -> list[BaseGeomet
             last = wall.length_m + half_m if at_end else high
             line = LineString([wall.point_at(first), wall.point_at(last)])
             bodies.append(line.buffer(half_m, cap_style="flat"))
-    return bodies
+    return bodies + [region.polygon for region in plan.solid_regions if height_m <= region.top_m]
 
 
 def _covered(

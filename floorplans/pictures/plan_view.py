@@ -95,10 +95,14 @@ def _draw_floor(plan: FloorPlan, ax: Axes) -> None:
 
 
 def _draw_walls(plan: FloorPlan, ax: Axes, strips: WallStrips) -> None:
-    """Draw wall strips by material: walls below the ceiling under the others, thick over thin."""
+    """Draw walls and columns by material: low walls under the others, thick over thin."""
     by_style: defaultdict[tuple[bool, str], Quads] = defaultdict(list)
     for wall in sorted(plan.walls, key=lambda wall: wall.thickness_m):
         by_style[is_low(wall, plan), wall.material] += strips.strips(wall)
+    for region in plan.solid_regions:
+        by_style[region.top_m < plan.height_m, region.material].append(
+            get_coordinates(region.polygon.exterior)
+        )
     for rank, ((low, material), quads) in enumerate(by_style.items()):
         colour = plan.colour_of(material)
         collection = PolyCollection(

@@ -61,6 +61,13 @@ LAYERS: dict[str, LayerInfo] = {
 }
 """The fields of a `RadioMap` that hold one value per cell, in the order they are stored in."""
 
+EMPTY = {
+    **{name: info.without_path for name, info in LAYERS.items() if info.without_path is not None},
+    "path_count": 0,
+    "left_out_db": -np.inf,
+}
+"""Value of each layer in a cell that no path can reach."""
+
 
 def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDArray[Any]]:
     """Return the layers of a map of n receivers, by name.

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from raytrace.arrays import Floats, Ints
@@ -14,7 +15,7 @@ from raytrace.extras import needs_extra
 from raytrace.grid import Grid
 from raytrace.radio.antennas import Antenna, HalfWaveDipole
 from raytrace.radio.transmitter import Transmitter
-from raytrace.results.layers import LAYERS
+from raytrace.results.layers import EMPTY, LAYERS
 from raytrace.results.map_file import attributes_of, read_map_file, write_map_file
 
 if TYPE_CHECKING:
@@ -84,6 +85,13 @@ class RadioMap:
     def with_plan(self, text: str, sha256: str) -> RadioMap:
         """Return the same map with its plan stored in it."""
         return replace(self, plan_text=text, plan_sha256=sha256)
+
+    def covering(self, cells: NDArray[np.bool_]) -> RadioMap:
+        """Return the same map with no path in any but some cells (n_y, n_x)."""
+        if cells.all():
+            return self
+        emptied = {name: np.where(cells, layer, EMPTY[name]) for name, layer in self.layers.items()}
+        return replace(self, **emptied)
 
     def to_xarray(self) -> xr.Dataset:
         """Return the map as a data set; xarray is needed (``pip install "rssnav[data]"``).

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from shapely import Point
 
 import floorplans
 from floorplans import FloorPlan
@@ -174,7 +173,7 @@ def _draw(plan: FloorPlan, paths: Paths, only: str, picture: Path, style: str | 
 def _check_inside(plan: FloorPlan, name: str, to: Position) -> None:
     x, y, z = to
     x_min, y_min, x_max, y_max = plan.bounds
-    if not (plan.outline.contains(Point(x, y)) and 0.0 < z < plan.height_m):
+    if not (plan.contains(np.array([(x, y)]), z).all() and 0.0 < z < plan.height_m):
         raise typer.BadParameter(
             f"({x:g}, {y:g}, {z:g}) is not inside {name}, which reaches from ({x_min:g}, "
             f"{y_min:g}) to ({x_max:g}, {y_max:g}) and is {plan.height_m:g} m high.",

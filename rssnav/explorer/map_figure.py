@@ -31,6 +31,7 @@ from shapely import get_coordinates
 from floorplans import FloorPlan
 from floorplans.pictures.legend import SOURCE, START
 from raytrace import RadioMap
+from rssnav.maps import cells_inside
 from rssnav.pictures.radio_map import FREE_WALL, NO_PATH
 from rssnav.pictures.style import AGENT_COLOURS, INK
 
@@ -120,9 +121,10 @@ class MapFigure:
             "dh": [grid.y[-1] - grid.y[0] + 2 * half],
         }
         self._hover.tooltips = _tooltips(radio_map)
-        uncovered = grid.points()[~np.isfinite(radio_map.rss_dbm).ravel()]
+        uncovered = ~np.isfinite(radio_map.rss_dbm) & cells_inside(self._plan, grid)
+        dark = grid.points()[uncovered.ravel()]
         self._uncovered_cells.glyph.update(width=grid.cell_size_m, height=grid.cell_size_m)
-        self._uncovered.data = {"x": uncovered[:, 0], "y": uncovered[:, 1]}
+        self._uncovered.data = {"x": dark[:, 0], "y": dark[:, 1]}
 
     def show_marks(self, plan: FloorPlan) -> None:
         """Move the marks to the plan's source and start."""
@@ -224,6 +226,15 @@ class MapFigure:
         ):
             xs, ys = ([*lines[:, :, axis]] for axis in (0, 1))
             self.model.multi_line(xs, ys, line_color=colour, line_width=width, line_cap="square")
+        columns = [
+            get_coordinates(r.polygon.exterior) for r in plan.solid_regions if height_m <= r.top_m
+        ]
+        self.model.multi_polygons(
+            xs=[[[ring[:, 0].tolist()]] for ring in columns],
+            ys=[[[ring[:, 1].tolist()]] for ring in columns],
+            fill_color=INK,
+            line_color=None,
+        )
 
     def _draw_overlays(self) -> None:
         self._frame = self.model.rect(

@@ -1,7 +1,8 @@
 """A radio map as a picture: RSS in colour over the plan's walls, transmitter and start.
 
-Cells without a path are hatched, so that they are not mistaken for a weak signal. Walls that are
-solid at the receivers' height are dark; openings and low walls are light.
+Cells of the building without a path are hatched, so that they are not mistaken for a weak signal;
+what is outside is blank. Walls and columns that are solid at the receivers' height are dark;
+openings and low walls are light.
 """
 
 import textwrap
@@ -18,9 +19,11 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
+from shapely import get_coordinates
 
 from floorplans import FloorPlan
 from raytrace import Grid, RadioMap
+from rssnav.maps import cells_inside
 from rssnav.pictures.style import (
     COLUMN_IN,
     INK,
@@ -76,8 +79,9 @@ def draw_radio_map(
     rss_dbm = np.ma.masked_array(radio_map.rss_dbm, uncovered)
     image = draw_cells(ax, radio_map.grid, rss_dbm, norm=Normalize(low, high))
     image.set_gid("rss")
-    if uncovered.any():
-        _hatch_cells(radio_map.grid, uncovered, ax)
+    dark = uncovered & cells_inside(plan, radio_map.grid)
+    if dark.any():
+        _hatch_cells(radio_map.grid, dark, ax)
     draw_walls(plan, radio_map.grid.height_m, ax)
     position = radio_map.transmitter.position
     draw_transmitter(ax, position, "source" if position == plan.source else "transmitter")
@@ -137,11 +141,11 @@ def _range_of(rss_dbm: NDArray[np.float64]) -> tuple[float, float]:
     return float(rss_dbm.min()), float(rss_dbm.max())
 
 
-def _hatch_cells(grid: Grid, uncovered: NDArray[np.bool_], ax: Axes) -> None:
+def _hatch_cells(grid: Grid, dark: NDArray[np.bool_], ax: Axes) -> None:
     """Hatch the cells (n_y, n_x) without a path."""
     half = 0.5 * grid.cell_size_m
     square = half * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-    centres = grid.points()[uncovered.ravel(), :2]
+    centres = grid.points()[dark.ravel(), :2]
     cells = PolyCollection(
         [*(centres[:, None] + square)],
         facecolors=NO_PATH,
@@ -155,7 +159,14 @@ def _hatch_cells(grid: Grid, uncovered: NDArray[np.bool_], ax: Axes) -> None:
 
 
 def draw_walls(plan: FloorPlan, height_m: float, ax: Axes) -> None:
-    """Draw all walls lightly, and those that are solid at a height [m] in black."""
+    """Draw all walls lightly, and walls and columns that are solid at a height [m] in black."""
+    columns = [
+        get_coordinates(r.polygon.exterior) for r in plan.solid_regions if height_m <= r.top_m
+    ]
+    if columns:
+        filled = PolyCollection(columns, facecolors=INK, linewidths=0, zorder=2)
+        filled.set_gid("columns")
+        ax.add_collection(filled, autolim=False)
     whole = np.array([(wall.start, wall.end) for wall in plan.walls])
     layers: Sequence[tuple[str, NDArray[np.float64], str, float]] = (
         ("walls", whole, FREE_WALL, 0.7),
@@ -208,7 +219,7 @@ def _keys(plan: FloorPlan, radio_map: RadioMap) -> list[Line2D | Patch]:
     solid_m = np.linalg.norm(np.diff(plan.solid_segments(height_m), axis=1), axis=2).sum()
     if solid_m < sum(wall.length_m for wall in plan.walls) - _LENGTH_TOLERANCE_M:
         keys.append(Line2D([], [], color=FREE_WALL, lw=0.9, label="opening or low wall"))
-    if not np.isfinite(radio_map.rss_dbm).all():
+    if (~np.isfinite(radio_map.rss_dbm) & cells_inside(plan, radio_map.grid)).any():
         hatched = Patch(facecolor=NO_PATH, edgecolor=HATCH_COLOUR, hatch=HATCH, lw=0)
         hatched.set_label("no path")
         keys.append(hatched)
