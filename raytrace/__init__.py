@@ -1,9 +1,9 @@
 """Exact indoor ray tracing: every path of a bounded order, no sampling.
 
 A `Scene` is made from a triangle mesh of vertical wall sheets, a floor and a ceiling. From it
-`trace_paths` finds the paths to given receivers and `compute_radio_map` sums them over a grid.
-Lengths are in metres, heights above the floor, angles in radians, gains linear unless a name
-ends in ``_db`` or ``_dbm``.
+`trace_paths` finds the paths to given receivers, `received_power` sums them at points, and
+`compute_radio_map` over a grid. Lengths are in metres, heights above the floor, angles in radians,
+gains linear unless a name ends in ``_db`` or ``_dbm``.
 """
 
 from raytrace.config import TraceConfig
@@ -36,7 +36,7 @@ from raytrace.results.paths import ImpulseResponse, Paths
 from raytrace.results.radio_map import RadioMap
 from raytrace.scene import Scene
 from raytrace.solver.cost_estimate import CostEstimate, estimate_cost
-from raytrace.trace import compute_radio_map, trace_paths
+from raytrace.trace import compute_radio_map, received_power, trace_paths
 
 __all__ = [
     "ABSORBER",
@@ -70,6 +70,7 @@ __all__ = [
     "compute_radio_map",
     "dielectrics_of",
     "estimate_cost",
+    "received_power",
     "find_material",
     "trace_paths",
 ]

@@ -17,7 +17,7 @@ from raytrace.kernels.sums import Sums
 from raytrace.memory import memory_limit
 from raytrace.radio.antennas import Antenna, HalfWaveDipole
 from raytrace.radio.transmitter import Transmitter
-from raytrace.results.layers import layers_of
+from raytrace.results.layers import layers_of, received_dbm
 from raytrace.results.paths import Paths
 from raytrace.results.radio_map import RadioMap
 from raytrace.scene import Scene
@@ -70,9 +70,7 @@ def trace_paths(
     TraceStoppedError, MemoryLimitError
         As for `compute_radio_map`.
     """
-    receivers = np.array(receivers, dtype=np.float64)
-    if receivers.ndim != 2 or receivers.shape[1] != 3 or not np.isfinite(receivers).all():
-        raise ValueError(f"receivers of shape {receivers.shape}: expected finite numbers (n, 3)")
+    receivers = _positions(receivers, "receivers")
     config = config or TraceConfig()
     evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(1, stop) as workers:
@@ -152,10 +150,7 @@ def compute_radio_map(
         guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
         points = grid.points()
         tracing = workers.run(prepare, scene, transmitter.position, points, config, guard)
-        classes = path_classes(tracing.shared_by(workers.n))
-        sums = sum_paths(
-            workers, classes, evaluation, max_paths=config.max_paths, progress=progress
-        )
+        sums = _sum_paths(workers, tracing, evaluation, progress)
     straight_m = np.linalg.norm(points - np.array(transmitter.position), axis=1)
     _warn_of_near_cells(sums, points)
     layers = layers_of(sums, straight_m, transmitter.power_dbm)
@@ -168,6 +163,75 @@ def compute_radio_map(
         provenance=_provenance(scene, time.perf_counter() - started),
         receive_antenna=receive_antenna or HalfWaveDipole(),
     )
+
+
+def received_power(
+    scene: Scene,
+    transmitter: Transmitter,
+    points: Floats,
+    config: TraceConfig | None = None,
+    *,
+    receive_antenna: Antenna | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    stop: Stop | None = None,
+    max_memory_bytes: int | None = None,
+) -> Floats:
+    """Sum the powers of every path at any points, such as those of a walk or a survey.
+
+    No path is stored: the cost and the values are those of cells of a map at the same points.
+
+    Parameters
+    ----------
+    scene, transmitter
+        The building and the transmitter.
+    points
+        (n, 3) positions of receivers [m].
+    config, receive_antenna, threads, progress, stop, max_memory_bytes
+        As for `compute_radio_map`.
+
+    Returns
+    -------
+    (n,) float64
+        Received power [dBm], at most the transmit power; -inf where no path arrives, and outside
+        the building.
+
+    Raises
+    ------
+    ValueError
+        For points that are not finite numbers (n, 3).
+    SceneError, TraceStoppedError, MemoryLimitError
+        As for `compute_radio_map`.
+    """
+    points = _positions(points, "points")
+    config = config or TraceConfig()
+    if not len(points):
+        return np.empty(0)
+    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
+    with Workers(threads, stop) as workers:
+        guard = workers.guard(memory_limit(max_memory_bytes))
+        needed_bytes = cells_bytes(scene, len(points), config, workers.n)
+        guard = taking(guard, needed_bytes, f"{len(points)} points")
+        tracing = workers.run(prepare, scene, transmitter.position, points, config, guard)
+        sums = _sum_paths(workers, tracing, evaluation, progress)
+    return received_dbm(sums.power, transmitter.power_dbm)
+
+
+def _positions(points: Floats, name: str) -> Floats:
+    """Check positions (n, 3) [m]."""
+    points = np.array(points, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
+        raise ValueError(f"{name} of shape {points.shape}: expected finite numbers (n, 3)")
+    return points
+
+
+def _sum_paths(
+    workers: Workers, tracing: Tracing, evaluation: Evaluation, progress: Progress | None
+) -> Sums:
+    """Sum all paths at each receiver of a tracing."""
+    classes = path_classes(tracing.shared_by(workers.n))
+    max_paths = tracing.config.max_paths
+    return sum_paths(workers, classes, evaluation, max_paths=max_paths, progress=progress)
 
 
 def _warn_of_near_cells(sums: Sums, points: Floats) -> None:

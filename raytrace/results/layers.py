@@ -89,10 +89,12 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
     focus = mean[:, COSINE] ** 2 + mean[:, SINE] ** 2
     strongest = moments[:, STRONGEST]
     return {
-        "rss_dbm": _dbm(power, power_dbm),
-        "rss_coherent_dbm": _dbm(np.where(reached, np.abs(sums.field) ** 2, 0.0), power_dbm),
+        "rss_dbm": received_dbm(power, power_dbm),
+        "rss_coherent_dbm": received_dbm(
+            np.where(reached, np.abs(sums.field) ** 2, 0.0), power_dbm
+        ),
         "path_count": np.floor(n_paths + 0.5).astype(np.int64),
-        "strongest_path_dbm": _dbm(strongest, power_dbm),
+        "strongest_path_dbm": received_dbm(strongest, power_dbm),
         "mean_delay_s": np.where(reached, straight_m + mean[:, EXCESS], 0.0) / SPEED_OF_LIGHT,
         "delay_spread_s": np.where(reached, np.sqrt(variance), 0.0) / SPEED_OF_LIGHT,
         "angular_spread": np.where(reached, np.sqrt(np.maximum(1.0 - focus, 0.0)), 0.0),
@@ -101,7 +103,7 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
     }
 
 
-def _dbm(power: Floats, power_dbm: float) -> Floats:
+def received_dbm(power: Floats, power_dbm: float) -> Floats:
     """Received power [dBm] of a power gain, at most the transmit power; -inf for none."""
     dbm = np.full(len(power), -np.inf)
     some = power > 0.0
