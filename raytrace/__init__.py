@@ -70,7 +70,7 @@ __all__ = [
     "compute_radio_map",
     "dielectrics_of",
     "estimate_cost",
-    "received_power",
     "find_material",
+    "received_power",
     "trace_paths",
 ]

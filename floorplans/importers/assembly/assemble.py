@@ -211,11 +211,11 @@ def _assumptions(
             yield Assumption(key, getattr(plan, key), "the file names no material")
     if options.source is None:
         yield Assumption(
-            "source", f"{list(plan.source)}", "the file states no source; away from walls"
+            "source", f"{list(plan.require_source())}", "the file states no source; away from walls"
         )
     if options.start is None:
         why = f"the cell with the longest walk from the source, {places.distance_m:.0f} m"
-        yield Assumption("start", f"{list(plan.start)}", why)
+        yield Assumption("start", f"{list(plan.require_start())}", why)
     yield from draft.assumed
     yield from _wall_assumptions(draft, options)
     yield from _opening_assumptions(draft)
