@@ -27,6 +27,7 @@ class What(StrEnum):
     SENSITIVITY = "sensitivity"
     NOISE = "noise"
     COMPARISON = "comparison"
+    READINGS = "readings"
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -49,7 +50,8 @@ def run_experiments(
         What,
         typer.Argument(
             help="The paper; or the effect of choices it does not specify (sensitivity), RSS "
-            "readings that fluctuate (noise), other methods and the optimum (comparison)."
+            "readings that fluctuate (noise), other methods and the optimum (comparison), flights "
+            "that have the printed lengths (readings)."
         ),
     ] = What.PAPER,
     quick: Annotated[

@@ -107,6 +107,8 @@ class Study(Generic[PieceT, OutcomeT]):
         From all outcomes to the tables.
     figures : callable
         From all outcomes to the figures, by the name of their files.
+    needs_maps : bool
+        Whether a piece uses the scenarios; otherwise there are none in its conditions.
     """
 
     name: str
@@ -116,6 +118,7 @@ class Study(Generic[PieceT, OutcomeT]):
     measure: Callable[[PieceT, Conditions], Sequence[OutcomeT]]
     tables: Callable[[Sequence[OutcomeT]], tuple[Table, ...]]
     figures: Callable[[Sequence[OutcomeT]], dict[str, Figure]]
+    needs_maps: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +189,7 @@ def run_study(
     """
     out, progress, notice = Path(out), progress or ignore, notice or ignore
     scenarios = load_scenarios(
-        PLANS,
+        PLANS if study.needs_maps else (),
         out / "maps",
         threads=threads,
         max_memory_bytes=max_memory_bytes,
