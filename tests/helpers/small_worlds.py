@@ -25,6 +25,12 @@ class SmallPlan:
     def outline(self):
         return shapely.box(0.0, 0.0, *self.size)
 
+    def require_source(self):
+        return self.source
+
+    def require_start(self):
+        return self.start
+
     def solid_segments(self, height_m):
         x, y = self.size
         shell = [((0, 0), (x, 0)), ((x, 0), (x, y)), ((x, y), (0, y)), ((0, y), (0, 0))]

@@ -7,29 +7,35 @@ which of these flights exist at all.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rssnav.experiments.studies.readings import figure, tables
-from rssnav.experiments.studies.readings.interpretations import geometries, offsets
-from rssnav.experiments.studies.readings.outcome import measure
+from rssnav.experiments.studies.readings.interpretations import Geometry, geometries, offsets
+from rssnav.experiments.studies.readings.outcome import Outcome, measure
 from rssnav.experiments.studies.study import Study
 
-GEOMETRIES = geometries()
-N_GEOMETRIES = len(GEOMETRIES)
+
+def _of(outcomes: Sequence[Outcome], wanted: tuple[Geometry, ...]) -> list[Outcome]:
+    """Outcomes of these interpretations, in their order."""
+    by_geometry = {outcome.geometry: outcome for outcome in outcomes}
+    return [by_geometry[geometry] for geometry in wanted]
+
 
 STUDY = Study(
     name="readings",
     runs=1,
     quick_runs=1,
-    pieces=(*GEOMETRIES, *offsets()),
+    pieces=tuple(dict.fromkeys((*geometries(), *offsets()))),
     measure=lambda geometry, _: (measure(geometry),),
     tables=lambda outcomes: (
         tables.diagonals(),
-        tables.lengths(outcomes[:N_GEOMETRIES]),
+        tables.lengths(_of(outcomes, geometries())),
         tables.parities(),
-        tables.interpretations(outcomes[:N_GEOMETRIES]),
-        tables.source_offsets(outcomes[N_GEOMETRIES:]),
+        tables.interpretations(_of(outcomes, geometries())),
+        tables.source_offsets(_of(outcomes, offsets())),
     ),
     figures=lambda outcomes: {
-        "readings": figure.draw(outcomes[:N_GEOMETRIES], outcomes[N_GEOMETRIES:])
+        "readings": figure.draw(_of(outcomes, geometries()), _of(outcomes, offsets()))
     },
     needs_maps=False,
 )

@@ -20,9 +20,9 @@ PIECES = {
 }
 
 
-@pytest.fixture(params=STUDIES)
+@pytest.fixture(params=PIECES)
 def study(request, monkeypatch):
-    """A study of few and short trainings."""
+    """A study that trains, with few and short trainings."""
     monkeypatch.setattr(measuring, "SPEED", 1)
     monkeypatch.setattr(measuring, "EPISODES", 50)
     monkeypatch.setattr(alternatives, "STEP_LIMIT", 20_000)

@@ -14,6 +14,7 @@ from rssnav.experiments.studies.readings.interpretations import (
     STATED_GOAL,
     Count,
     Geometry,
+    geometries,
 )
 from rssnav.experiments.studies.readings.outcome import Outcome, measure
 from rssnav.experiments.studies.study import run_study
@@ -55,5 +56,5 @@ def test_the_study_writes_its_tables_and_figure(
     assert all(file.stat().st_size for file in result.files)
     assert not (tmp_path / "maps").exists()
     rows = {table.key: len(table.rows) for table in result.tables}
-    assert rows["readings"] == 3 * study.N_GEOMETRIES
+    assert rows["readings"] == 3 * len(geometries())
     assert rows["readings_offsets"] == OFFSETS_M.size**2
