@@ -16,6 +16,7 @@ from typing import Any
 from rssnav.agent_description import describe, flat_parameters
 from rssnav.experiments.paper.data import PaperData
 from rssnav.experiments.tables import Column, Table
+from rssnav.schedule import NO_STEP_LIMIT
 
 _PACKAGES = (
     "rssnav",
@@ -112,7 +113,11 @@ def parameters(data: PaperData) -> Table:
     }
     for each in data.results.values():
         groups[f"{each.agent.name} agent"] = flat_parameters(describe(each.agent))
-    rows = [(group, name, str(v)) for group, values in groups.items() for name, v in values.items()]
+    rows = [
+        (group, name, _text(value))
+        for group, values in groups.items()
+        for name, value in values.items()
+    ]
     return Table(
         "parameters",
         "Parameters",
@@ -120,3 +125,10 @@ def parameters(data: PaperData) -> Table:
         (Column("group", "Part"), Column("name", "Parameter"), Column("value", "Value")),
         tuple(rows),
     )
+
+
+def _text(value: object) -> str:
+    """Return a parameter as the report shows it."""
+    if value is None or value == NO_STEP_LIMIT:
+        return "none"
+    return f"{value:.9g}" if isinstance(value, float) else str(value)

@@ -361,10 +361,11 @@ def test_trainings_on_disk_are_those_of_the_report(run):
 def test_parameters_are_those_of_the_trainings():
     rows = {(row["group"], row["name"]): row["value"] for row in parameters(small_data()).records()}
     assert rows["learning", "gamma"] == "0.98"
-    assert rows["learning", "initial_q"] == "100.0"
+    assert rows["learning", "initial_q"] == "100"
     assert rows["trace", "max_reflections"] == "6"
-    assert rows["rss agent", "terminal_dbm"] == "-21.0"
-    assert rows["location agent", "terminal_distance_m"] == "2.0"
+    assert rows["rss agent", "terminal_dbm"] == "-21"
+    assert rows["location agent", "terminal_distance_m"] == "2"
+    assert rows["schedule", "max_total_steps"] == "none"
 
 
 def test_text_in_the_report_is_escaped(run):
