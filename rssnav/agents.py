@@ -18,17 +18,18 @@ from numpy.typing import NDArray
 from rssnav.arguments import require
 from rssnav.decision_process import DecisionProcess
 from rssnav.discrete_states import (
+    SENSITIVITY_DBM,
     ExactStates,
     Fluctuation,
     GoalRule,
     ReadingStates,
     StateRule,
+    check_sensitivity,
+    heard,
     reading_states,
 )
 from rssnav.learning_parameters import QLearning
 from rssnav.world import GOAL_DISTANCE_M, GridWorld, WorldError
-
-_LISTED = 5
 
 
 class Agent(Protocol):
@@ -53,7 +54,9 @@ class RssAgent:
     """The paper's agent: it knows only the RSS it reads.
 
     Its discrete state follows from the reading, its reward is RSS_t - RSS_(t-1) [dB], and an
-    episode ends when the reading exceeds ``terminal_dbm``.
+    episode ends when the reading exceeds ``terminal_dbm``. In a cell without a path, or where the
+    RSS does not exceed ``sensitivity_dbm``, the reading is "no signal": one discrete state for all
+    such cells, worth ``sensitivity_dbm`` in the reward.
 
     Parameters
     ----------
@@ -63,13 +66,17 @@ class RssAgent:
         Reading above which the transmitter is found [dBm]; -21 dBm is free space at 2 m.
     fluctuation : Fluctuation
         How readings differ from the map; not at all by default, as in the paper.
+    sensitivity_dbm : float
+        Weakest level that the receiver hears [dBm].
     """
 
     states: StateRule = field(default_factory=ExactStates)
     terminal_dbm: float = -21.0
     fluctuation: Fluctuation = field(default_factory=Fluctuation)
+    sensitivity_dbm: float = SENSITIVITY_DBM
 
     def __post_init__(self) -> None:
+        check_sensitivity(self.sensitivity_dbm, self.terminal_dbm)
         if self.fluctuation.sigma_db > 0.0 and isinstance(self.states, ExactStates):
             raise ValueError(
                 f"states: with readings that fluctuate (sigma_db = {self.fluctuation.sigma_db:g}) "
@@ -87,24 +94,26 @@ class RssAgent:
         Raises
         ------
         WorldError
-            When a reachable cell has no path (-inf dBm: its reward would be infinite), no
-            reachable cell exceeds ``terminal_dbm``, or the start does.
+            When no reachable cell exceeds ``terminal_dbm``, or the start does.
         """
-        _refuse_cells_without_coverage(world)
+        heard_dbm = heard(world.rss_dbm, self.sensitivity_dbm)
         terminal = world.rss_dbm > self.terminal_dbm
         _check_terminal(world, terminal, f"RSS > {self.terminal_dbm:g} dBm")
-        difference = world.rss_dbm[world.next_state] - world.rss_dbm[:, None]
+        difference = heard_dbm[world.next_state] - heard_dbm[:, None]
         return _process(
             world, learning, difference, terminal, self._reading_states(world, learning)
         )
 
     def _reading_states(self, world: GridWorld, learning: QLearning) -> ReadingStates | None:
         """How readings become discrete states; None where each cell is a discrete state."""
-        if isinstance(self.states, ExactStates) and np.unique(world.rss_dbm).size == world.n_states:
+        heard_dbm = heard(world.rss_dbm, self.sensitivity_dbm)
+        if isinstance(self.states, ExactStates) and np.unique(heard_dbm).size == world.n_states:
             return None
         replaces = learning.goal_reward_is == "instead"
         goal = GoalRule(self.terminal_dbm, learning.goal_reward, replaces)
-        return reading_states(self.states, self.fluctuation, world.rss_dbm, goal)
+        return reading_states(
+            self.states, self.fluctuation, world.rss_dbm, goal, self.sensitivity_dbm
+        )
 
 
 @dataclass(frozen=True)
@@ -164,18 +173,6 @@ def _process(
     kept = 0.0 if learning.goal_reward_is == "instead" else step_reward
     reward = np.where(arrives, kept + learning.goal_reward, np.where(possible, step_reward, 0.0))
     return DecisionProcess(world.next_state, reward, terminal, world.start_state, readings=readings)
-
-
-def _refuse_cells_without_coverage(world: GridWorld) -> None:
-    without = np.flatnonzero(np.isneginf(world.rss_dbm))
-    if without.size:
-        listed = ", ".join(f"({x:g}, {y:g})" for x, y in world.position[without[:_LISTED]])
-        more = ", ..." if without.size > _LISTED else ""
-        raise WorldError(
-            f"plan {world.plan_name!r}: {without.size} cells that can be reached at speed "
-            f"{world.speed} have no path from the source (-inf dBm), at {listed}{more} m: an RSS "
-            "agent has no reading there; allow more reflections or transmission in the map"
-        )
 
 
 def _check_terminal(world: GridWorld, terminal: NDArray[np.bool_], condition: str) -> None:

@@ -3,6 +3,10 @@
 The paper uses one discrete state per RSS value (its threshold Th = 0) in a static world, and
 describes two other rules, for readings that change from visit to visit and for few states. All
 three are here: :class:`ExactStates`, :class:`ToleranceStates`, :class:`IntervalStates`.
+
+A receiver hears nothing below its sensitivity. Cells without a path and weaker readings are
+"no signal", which is a discrete state of its own under every rule, and counts as a reading of the
+sensitivity in rewards.
 """
 
 from __future__ import annotations
@@ -15,6 +19,9 @@ from numpy.typing import NDArray
 
 from rssnav.arguments import require
 from rssnav.kernels.q_learning_from_readings import BY_CELL, INTERVALS, TOLERANCE, Sensor
+
+SENSITIVITY_DBM = -120.0
+"""Readings that are not above this level are "no signal" [dBm]: the thermal noise of 250 kHz."""
 
 MIN_THRESHOLD_DB = 1e-3
 MAX_INTERVALS = 1_000_000
@@ -118,6 +125,18 @@ class Fluctuation:
         require(within, "correlation", self.correlation, "a number in [0, 1)")
 
 
+def heard(rss_dbm: NDArray[np.float64], sensitivity_dbm: float) -> NDArray[np.float64]:
+    """Readings without fluctuation [dBm]; "no signal" is the sensitivity."""
+    return np.maximum(rss_dbm, sensitivity_dbm)
+
+
+def check_sensitivity(sensitivity_dbm: float, terminal_dbm: float) -> None:
+    """Raise ValueError unless a receiver of this sensitivity hears the level of the goal."""
+    hears = -math.inf < sensitivity_dbm < terminal_dbm
+    expected = f"a level below the goal's, {terminal_dbm:g} dBm"
+    require(hears, "sensitivity_dbm", sensitivity_dbm, expected)
+
+
 @dataclass(frozen=True)
 class GoalRule:
     """When an RSS episode ends, and its reward.
@@ -160,23 +179,29 @@ class ReadingStates:
 
 
 def reading_states(
-    rule: StateRule, fluctuation: Fluctuation, rss_dbm: NDArray[np.float64], goal: GoalRule
+    rule: StateRule,
+    fluctuation: Fluctuation,
+    rss_dbm: NDArray[np.float64],
+    goal: GoalRule,
+    sensitivity_dbm: float = SENSITIVITY_DBM,
 ) -> ReadingStates:
-    """Apply a state rule to the RSS (S,) [dBm] of a world's cells."""
+    """Apply a state rule to the RSS (S,) [dBm] of a world's cells, -inf without a path."""
+    heard_dbm = heard(rss_dbm, sensitivity_dbm)
     margin_db = _FLUCTUATION_RANGE * fluctuation.sigma_db
-    low_dbm, high_dbm = float(rss_dbm.min()) - margin_db, float(rss_dbm.max()) + margin_db
+    low_dbm, high_dbm = float(heard_dbm.min()) - margin_db, float(heard_dbm.max()) + margin_db
     kind, state_of_cell, edges = BY_CELL, np.empty(0, dtype=np.int32), np.empty(0)
     threshold, n_bins = 0.0, 0
     if isinstance(rule, ExactStates):
-        state_of_cell = rule.discrete_states(rss_dbm)
+        state_of_cell = rule.discrete_states(heard_dbm)
         n_initial = n_most = int(state_of_cell.max()) + 1
     elif isinstance(rule, IntervalStates):
         kind, edges = INTERVALS, np.array(rule.edges_dbm, dtype=np.float64)
-        n_initial = n_most = edges.size + 1
+        n_initial = edges.size + 1
+        n_most = n_initial + 1
     else:
         kind, threshold = TOLERANCE, float(rule.threshold_db)
         n_bins = int((high_dbm - low_dbm) * 2.0 / threshold) + 1
-        n_most = n_bins if fluctuation.sigma_db > 0.0 else min(n_bins, rss_dbm.size)
+        n_most = 1 + (n_bins if fluctuation.sigma_db > 0.0 else min(n_bins, rss_dbm.size))
         n_initial = 0
     sensor = Sensor(
         rss_dbm=rss_dbm,
@@ -187,6 +212,7 @@ def reading_states(
         low_dbm=low_dbm,
         sigma_db=float(fluctuation.sigma_db),
         correlation=float(fluctuation.correlation),
+        sensitivity_dbm=float(sensitivity_dbm),
         terminal_dbm=float(goal.terminal_dbm),
         goal_reward=float(goal.reward),
         goal_replaces=goal.replaces,

@@ -272,6 +272,7 @@ class ReadingLearner:
             state_of_bin=np.full(states.n_bins, -1, dtype=np.int32),
             value_dbm=np.zeros(states.max_discrete_states),
             fluctuation_db=np.zeros(1),
+            no_signal=np.full(1, -1, dtype=np.int32),
         )
 
     def advance(self, until_episode: int) -> None:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from raytrace.threads import n_threads
 from rssnav.agents import RssAgent
 from rssnav.arguments import require
-from rssnav.discrete_states import Fluctuation
+from rssnav.discrete_states import SENSITIVITY_DBM, Fluctuation
 from rssnav.kernels import particle_filter, searchers
 from rssnav.kernels.common import Moves
 from rssnav.kernels.particle_filter import Belief, Chart, Model
@@ -157,6 +157,7 @@ def search(
     seed: int = 0,
     terminal_dbm: float = -21.0,
     fluctuation: Fluctuation | None = None,
+    sensitivity_dbm: float = SENSITIVITY_DBM,
     threads: int | None = None,
 ) -> SearchResult:
     """Fly a searcher from the start, in many independent runs.
@@ -177,6 +178,8 @@ def search(
         Reading above which the transmitter is found [dBm].
     fluctuation : Fluctuation, optional
         How readings differ from the map; not at all by default.
+    sensitivity_dbm : float
+        Readings that are not above it are "no signal", as for :class:`RssAgent` [dBm].
     threads : int, optional
         Number of threads; all cores by default.
 
@@ -189,9 +192,10 @@ def search(
     """
     for name, value in (("runs", runs), ("max_steps", max_steps)):
         require(value >= 1, name, value, "at least 1")
-    process = RssAgent(terminal_dbm=terminal_dbm).decision_process(world, QLearning())
-    receiver_of = _receivers(world, fluctuation or Fluctuation(), terminal_dbm)
-    fly = _flying(searcher, world, moves_of(process))
+    agent = RssAgent(terminal_dbm=terminal_dbm, sensitivity_dbm=sensitivity_dbm)
+    process = agent.decision_process(world, QLearning())
+    receiver_of = _receivers(world, fluctuation or Fluctuation(), agent)
+    fly = _flying(searcher, world, moves_of(process), sensitivity_dbm)
 
     def one(run: int) -> tuple[NDArray[np.int32], bool]:
         states = np.full(max_steps + 1, world.start_state, dtype=np.int32)
@@ -218,7 +222,7 @@ Fly = Callable[[Receiver, FlightLog], bool]
 
 
 def _receivers(
-    world: GridWorld, fluctuation: Fluctuation, found_dbm: float
+    world: GridWorld, fluctuation: Fluctuation, agent: RssAgent
 ) -> Callable[[], Receiver]:
     """Function that makes receivers that share all but their fluctuation."""
     return lambda: Receiver(
@@ -226,11 +230,12 @@ def _receivers(
         float(fluctuation.sigma_db),
         float(fluctuation.correlation),
         np.zeros(1),
-        float(found_dbm),
+        float(agent.terminal_dbm),
+        float(agent.sensitivity_dbm),
     )
 
 
-def _flying(searcher: Searcher, world: GridWorld, moves: Moves) -> Fly:
+def _flying(searcher: Searcher, world: GridWorld, moves: Moves, sensitivity_dbm: float) -> Fly:
     """Function that flies a searcher and logs the flight."""
     if isinstance(searcher, RandomWalk):
         return lambda receiver, flight: searchers.walk(
@@ -240,7 +245,7 @@ def _flying(searcher: Searcher, world: GridWorld, moves: Moves) -> Fly:
         return lambda receiver, flight: searchers.ascend(
             moves, receiver, flight, searcher.readings, searcher.escape_steps
         )
-    model = _model(searcher, world)
+    model = _model(searcher, world, sensitivity_dbm)
     count, size = searcher.particles, world.n_states
 
     def track(receiver: Receiver, flight: FlightLog) -> bool:
@@ -252,7 +257,7 @@ def _flying(searcher: Searcher, world: GridWorld, moves: Moves) -> Fly:
     return track
 
 
-def _model(searcher: ParticleFilter, world: GridWorld) -> Model:
+def _model(searcher: ParticleFilter, world: GridWorld, sensitivity_dbm: float) -> Model:
     """Prior over the reachable part of the plan, and the likelihood."""
     low_xy, high_xy = world.position.min(axis=0), world.position.max(axis=0)
     ranges = (searcher.power_dbm, searcher.exponent)
@@ -264,4 +269,5 @@ def _model(searcher: ParticleFilter, world: GridWorld) -> Model:
         fresh_fraction=float(searcher.fresh_fraction),
         found_m=2.0,
         steps_to_draw=searcher.steps_to_draw,
+        sensitivity_dbm=float(sensitivity_dbm),
     )

@@ -45,11 +45,12 @@ from rssnav.cli.train_options import (
     MapFile,
     MaxSteps,
     ResultFile,
+    Sensitivity,
     Speed,
     Tolerance,
     UntilConverged,
 )
-from rssnav.discrete_states import StateRule
+from rssnav.discrete_states import StateRule, heard
 from rssnav.interrupts import INTERRUPTS
 from rssnav.keeping import lenient, save_or_rescue
 from rssnav.kernel_cache import learning_cache
@@ -83,6 +84,7 @@ def train_agent(
     tolerance: Tolerance = None,
     interval: Interval = None,
     fluctuation: FluctuationDb = 0.0,
+    sensitivity: Sensitivity = RssAgent.sensitivity_dbm,
     goal_rss: GoalRss = RssAgent.terminal_dbm,
     goal_distance: GoalDistance = LocationAgent.terminal_distance_m,
     gamma: Gamma = QLearning.gamma,
@@ -101,7 +103,7 @@ def train_agent(
     radio_map = RadioMap.load(map_file)
     require_map_for(loaded, radio_map, map_file)
     world = GridWorld.from_map(loaded, radio_map, speed)
-    senses = _Senses(agent, tolerance, interval, fluctuation, goal_rss, goal_distance)
+    senses = _Senses(agent, tolerance, interval, fluctuation, sensitivity, goal_rss, goal_distance)
     learning = _learning(gamma=gamma, eta=eta, initial_q=initial_q, max_steps=max_steps)
     job = _Job(
         world,
@@ -138,6 +140,7 @@ class _Senses:
     tolerance: float | None
     interval: float | None
     fluctuation: float
+    sensitivity: float
     goal_rss: float
     goal_distance: float
 
@@ -149,8 +152,10 @@ class _Senses:
             if self.agent is AgentName.LOCATION:
                 self._refuse_rss_options()
                 return LocationAgent(self.goal_distance)
-            states = _states(world.rss_dbm, self.tolerance, self.interval)
-            return RssAgent(states, self.goal_rss, Fluctuation(self.fluctuation))
+            heard_dbm = heard(world.rss_dbm, self.sensitivity)
+            states = _states(heard_dbm, self.tolerance, self.interval)
+            fluctuation = Fluctuation(self.fluctuation)
+            return RssAgent(states, self.goal_rss, fluctuation, self.sensitivity)
         except ValueError as error:
             raise typer.BadParameter(f"{error}.") from error
 
@@ -163,13 +168,12 @@ class _Senses:
 
 
 def _states(
-    rss_dbm: NDArray[np.float64], tolerance: float | None, interval: float | None
+    heard_dbm: NDArray[np.float64], tolerance: float | None, interval: float | None
 ) -> StateRule:
     if tolerance is not None:
         return ToleranceStates(tolerance)
     if interval is not None:
-        finite = rss_dbm[np.isfinite(rss_dbm)]
-        low, high = float(np.floor(finite.min())), float(np.ceil(finite.max()))
+        low, high = float(np.floor(heard_dbm.min())), float(np.ceil(heard_dbm.max()))
         return IntervalStates.uniform(low, high, interval)
     return ExactStates()
 

@@ -87,6 +87,16 @@ FluctuationDb = Annotated[
         rich_help_panel=STATES,
     ),
 ]
+Sensitivity = Annotated[
+    float,
+    typer.Option(
+        metavar="DBM",
+        min=-1000.0,
+        max=1000.0,
+        help="The RSS agent reads no signal where the RSS is not above this.",
+        rich_help_panel=STATES,
+    ),
+]
 GoalRss = Annotated[
     float,
     typer.Option(

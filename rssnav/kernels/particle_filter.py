@@ -34,6 +34,7 @@ class Model(NamedTuple):
     fresh_fraction: float  # of new particles, when resampled
     found_m: float  # a reading that does not find the transmitter means it is not nearer than this
     steps_to_draw: int  # after which another position is drawn
+    sensitivity_dbm: float  # a reading that is not above it means a level of at most this
 
 
 class Belief(NamedTuple):
@@ -86,7 +87,10 @@ def weigh(belief: Belief, model: Model, x: float, y: float, reading_dbm: float) 
             continue
         expected_dbm = particle[POWER] - 10.0 * particle[EXPONENT] * math.log10(distance_m)
         misfit = (reading_dbm - expected_dbm) / model.sigma_db
-        weights[k] *= math.exp(-0.5 * misfit * misfit)
+        if reading_dbm <= model.sensitivity_dbm:  # censored: probability of any lower level
+            weights[k] *= 0.5 * math.erfc(-math.sqrt(0.5) * misfit)
+        else:
+            weights[k] *= math.exp(-0.5 * misfit * misfit)
     total = 0.0
     for weight in weights:
         total += weight

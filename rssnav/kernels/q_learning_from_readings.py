@@ -1,8 +1,9 @@
 """Q-learning with discrete states made from RSS readings.
 
 A row of Q belongs to a discrete state, not to a cell: several cells can share one, and a cell can
-have several when readings fluctuate. The possible actions are always those of the cell. With one
-discrete state per cell and readings without fluctuation this loop equals
+have several when readings fluctuate. A reading that is not above the sensitivity is "no signal": it
+equals the sensitivity, and has a discrete state of its own. The possible actions are always those
+of the cell. With one discrete state per cell and readings without fluctuation this loop equals
 :mod:`rssnav.kernels.q_learning` bit for bit, but is slower.
 """
 
@@ -45,6 +46,7 @@ class Sensor(NamedTuple):
     low_dbm: float  # lower end of bin 0, for TOLERANCE
     sigma_db: float  # standard deviation of the fluctuation
     correlation: float  # of the fluctuation from one reading to the next
+    sensitivity_dbm: float  # readings that are not above it are "no signal"
     terminal_dbm: float
     goal_reward: float
     goal_replaces: bool  # the goal reward replaces the RSS difference
@@ -60,16 +62,21 @@ class KnownStates(NamedTuple):
     state_of_bin: NDArray[np.int32]  # (bins,) -1 where no state is known
     value_dbm: NDArray[np.float64]  # (rows,) reading that created the state
     fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
+    no_signal: NDArray[np.int32]  # (1,) state of "no signal", -1 before the first such reading
 
 
 @jit(inline=True)
 def reading_in(
     sensor: Sensor, known: KnownStates, generator: NDArray[np.uint64], cell: int
 ) -> float:
-    """RSS read in a cell [dBm]: a first-order autoregressive fluctuation on the map's value."""
-    return fluctuating(
+    """RSS read in a cell [dBm]: a first-order autoregressive fluctuation on the map's value.
+
+    At least the sensitivity, which means "no signal".
+    """
+    level_dbm = fluctuating(
         sensor.rss_dbm[cell], sensor.sigma_db, sensor.correlation, known.fluctuation_db, generator
     )
+    return max(level_dbm, sensor.sensitivity_dbm)
 
 
 @jit(inline=True)
@@ -98,9 +105,14 @@ def _nearest_known(sensor: Sensor, known: KnownStates, reading: float) -> int:
 def discrete_state_of(
     sensor: Sensor, known: KnownStates, counters: NDArray[np.int64], cell: int, reading: float
 ) -> int:
-    """Discrete state of a reading; a tolerance state is created when none is near enough."""
+    """Discrete state of a reading; "no signal" and tolerance states are created when needed."""
     if sensor.kind == BY_CELL:
         return int(sensor.state_of_cell[cell])
+    if reading <= sensor.sensitivity_dbm:
+        if known.no_signal[0] < 0:
+            known.no_signal[0] = counters[N_DISCRETE_STATES]
+            counters[N_DISCRETE_STATES] += 1
+        return int(known.no_signal[0])
     if sensor.kind == INTERVALS:
         return int(np.searchsorted(sensor.edges_dbm, reading, side="right"))
     state = _nearest_known(sensor, known, reading)
@@ -226,6 +238,8 @@ def steady_discrete_states(sensor: Sensor, known: KnownStates, states: NDArray[n
         reading = sensor.rss_dbm[cell]
         if sensor.kind == BY_CELL:
             states[cell] = sensor.state_of_cell[cell]
+        elif reading <= sensor.sensitivity_dbm:
+            states[cell] = known.no_signal[0]
         elif sensor.kind == INTERVALS:
             states[cell] = np.searchsorted(sensor.edges_dbm, reading, side="right")
         else:

@@ -24,6 +24,7 @@ class Receiver(NamedTuple):
     correlation: float  # of the fluctuation from one reading to the next
     fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
     found_dbm: float  # a reading above it means that the transmitter is found
+    sensitivity_dbm: float  # readings that are not above it are "no signal"
 
 
 class FlightLog(NamedTuple):
@@ -36,14 +37,15 @@ class FlightLog(NamedTuple):
 
 @jit(inline=True)
 def read(receiver: Receiver, generator: NDArray[np.uint64], state: int) -> float:
-    """Reading in a state [dBm]."""
-    return fluctuating(
+    """Reading in a state [dBm]; the sensitivity where there is no signal."""
+    level_dbm = fluctuating(
         receiver.rss_dbm[state],
         receiver.sigma_db,
         receiver.correlation,
         receiver.fluctuation_db,
         generator,
     )
+    return max(level_dbm, receiver.sensitivity_dbm)
 
 
 @jit(inline=True)

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_worlds import log_distance_map, world_of
+from small_worlds import log_distance_map
 
 from rssnav import (
     ExactStates,
@@ -49,15 +49,6 @@ def test_both_agents_end_at_the_same_cells(room_world):
     by_distance = LocationAgent().decision_process(room_world, learning).terminal
     assert np.array_equal(by_rss, by_distance)
     assert by_rss.any()
-
-
-def test_cells_without_a_path_are_refused_for_the_rss_agent_only(room):
-    rss_dbm = log_distance_map(room).rss_dbm
-    rss_dbm[4, 7] = -np.inf
-    world = world_of(room, rss_dbm=rss_dbm)
-    with pytest.raises(WorldError, match=r"1 cells .* \(-inf dBm\), at \(7.5, 4.5\) m"):
-        RssAgent().decision_process(world, QLearning())
-    LocationAgent().decision_process(world, QLearning())
 
 
 def test_a_goal_that_no_cell_meets_is_refused(room_world):

@@ -120,6 +120,7 @@ def model():
         fresh_fraction=0.0,
         found_m=2.0,
         steps_to_draw=10,
+        sensitivity_dbm=-120.0,
     )
 
 

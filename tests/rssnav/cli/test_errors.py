@@ -118,13 +118,6 @@ def test_start_that_cannot_reach_the_source_at_the_speed(made) -> None:
     assert "speeds that can: 1" in line
 
 
-def test_an_rss_agent_needs_a_path_in_every_cell(made) -> None:
-    plan, target = made
-    line = fault("train", plan, "--map", target)
-    assert "have no path from the source (-inf dBm), at (" in line
-    assert "allow more reflections" in line
-
-
 @pytest.mark.parametrize("fraction", [0.0, 0.01, 0.3, 0.9, 0.98])
 def test_truncated_map(made, tmp_path, fraction) -> None:
     plan, target = made
