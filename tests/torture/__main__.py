@@ -28,6 +28,7 @@ def main() -> int:
     counts = dict.fromkeys((*ATTACKS, "caches"), 0)
     slowest_s, n_faults = 0.0, 0
     with tempfile.TemporaryDirectory() as folder:
+        Path(folder).chmod(0o755)  # a stranger must come as far as the cache
         workshop = Workshop(Path(folder))
         for kind, attacked in _attacks(names, workshop, arguments):
             counts[kind] += attacked.n_attacks
