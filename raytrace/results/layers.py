@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from raytrace.arrays import Floats
+from raytrace.arrays import Floats, Ints
 from raytrace.constants import SPEED_OF_LIGHT
 from raytrace.kernels.sums import COSINE, EXCESS, EXCESS_SQUARED, SINE, STRONGEST, Sums
 
@@ -47,7 +47,7 @@ LAYERS: dict[str, LayerInfo] = {
     "rss_coherent_dbm": LayerInfo(
         "dBm", "received signal strength, power of the sum of the paths' fields", *_POWER, True
     ),
-    "path_count": LayerInfo("1", "number of paths", 0, np.inf, None, True, np.int64),
+    "path_count": LayerInfo("1", "number of paths", 0, np.inf, 0, True, np.int64),
     "strongest_path_dbm": LayerInfo("dBm", "power of the strongest path", *_POWER),
     "mean_delay_s": LayerInfo("s", "mean delay, weighted with power", *_DELAY),
     "delay_spread_s": LayerInfo("s", "RMS delay spread, weighted with power", *_DELAY),
@@ -93,7 +93,7 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
         "rss_coherent_dbm": received_dbm(
             np.where(reached, np.abs(sums.field) ** 2, 0.0), power_dbm
         ),
-        "path_count": np.floor(n_paths + 0.5).astype(np.int64),
+        "path_count": path_count(n_paths, power),
         "strongest_path_dbm": received_dbm(strongest, power_dbm),
         "mean_delay_s": np.where(reached, straight_m + mean[:, EXCESS], 0.0) / SPEED_OF_LIGHT,
         "delay_spread_s": np.where(reached, np.sqrt(variance), 0.0) / SPEED_OF_LIGHT,
@@ -101,6 +101,16 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
         "k_factor_db": k_factor_db(strongest, power, n_paths),
         "left_out_db": _ratio_db(sums.left_out, power),
     }
+
+
+def path_count(n_paths: Floats, power: Floats) -> Ints:
+    """Return numbers of paths (n,) from their sums of weights, halves upwards.
+
+    At least 1 where any power arrives, also by a grazing path of little weight; 0 where none does,
+    as where every path leaves in a null of an antenna.
+    """
+    rounded = np.maximum(np.floor(n_paths + 0.5), 1.0)
+    return np.where(power > 0.0, rounded, 0.0).astype(np.int64)
 
 
 def received_dbm(power: Floats, power_dbm: float) -> Floats:

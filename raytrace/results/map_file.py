@@ -33,6 +33,7 @@ from raytrace.results.antenna_file import (
 from raytrace.results.checked_hdf5 import LARGEST, Checked, Hdf5ContentError, open_checked
 from raytrace.results.hdf5 import hdf5_bytes, write_array
 from raytrace.results.hdf5_content import HDF5_SIGNATURE
+from raytrace.results.layer_checks import contradictions
 from raytrace.results.layers import LAYERS
 
 FORMAT = "rssnav radio map"
@@ -188,10 +189,11 @@ def _format_error(file: Checked, path: Path) -> MapFileError | None:
 
 
 def _read(file: Checked) -> dict[str, Any]:
+    grid, transmitter = _grid(file), _transmitter(file)
     return {
-        "grid": _grid(file),
-        **_layers(file),
-        "transmitter": _transmitter(file),
+        "grid": grid,
+        **_layers(file, grid, transmitter),
+        "transmitter": transmitter,
         "receive_antenna": read_receive_antenna(file),
         "config": _config(file),
         "plan_text": file.text("plan_text"),
@@ -217,22 +219,24 @@ def _grid(file: Checked) -> Grid:
     return Grid(x, y, file.number("receiver_height_m"), cell_size_m)
 
 
-def _layers(file: Checked) -> dict[str, NDArray[Any]]:
-    """Read the layers that the file has; cells without a path must be such in all of them."""
+def _layers(file: Checked, grid: Grid, transmitter: Transmitter) -> dict[str, NDArray[Any]]:
+    """Read the layers that the file has; they must not contradict each other."""
     layers = {
         name: file.array(name, layer.dtype, ("n_y", "n_x"), low=layer.low, high=layer.high)
         for name, layer in LAYERS.items()
         if layer.required or name in file
     }
-    without = np.isneginf(layers["rss_dbm"])
-    for name, layer in layers.items():
-        value = LAYERS[name].without_path
-        if value is not None and (layer[without] != value).any():
-            raise Hdf5ContentError(
-                f"dataset {name!r}: expected {value:g} in cells without a path, where rss_dbm is "
-                "-inf"
-            )
+    straight_m = _distances(grid, transmitter.position)
+    for problem in contradictions(layers, straight_m, transmitter.power_dbm):
+        raise Hdf5ContentError(problem)
     return layers
+
+
+def _distances(grid: Grid, position: tuple[float, float, float]) -> NDArray[np.float64]:
+    """Distances (n_y, n_x) of the receivers from the transmitter [m]."""
+    x, y, z = position
+    with np.errstate(over="ignore"):
+        return np.hypot(np.hypot(grid.x - x, (grid.y - y)[:, None]), grid.height_m - z)
 
 
 def _config(file: Checked) -> TraceConfig:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from raytrace.arrays import Floats, Ints
-from raytrace.results.layers import k_factor_db
+from raytrace.results.layers import k_factor_db, path_count
 from raytrace.results.paths import Paths
 
 
@@ -22,7 +22,7 @@ class PathStatistics:
     Attributes
     ----------
     path_count
-        (n,) int64 number of paths.
+        (n,) int64 number of paths; at least 1 where any power arrives.
     rss_dbm
         (n,) sum of the paths' powers [dBm], eq. 33.
     rss_coherent_dbm
@@ -71,7 +71,7 @@ class PathStatistics:
         gain = paths.weight * paths.gain
         field = sums.of(gain.real) + 1j * sums.of(gain.imag)
         return cls(
-            path_count=np.floor(sums.of(paths.weight) + 0.5).astype(np.int64),
+            path_count=path_count(sums.of(paths.weight), power),
             rss_dbm=power_dbm + _decibels(power),
             rss_coherent_dbm=power_dbm + _decibels(np.abs(field) ** 2),
             strongest_path_dbm=power_dbm + _decibels(strongest),

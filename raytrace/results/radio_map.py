@@ -36,7 +36,7 @@ class RadioMap:
     rss_coherent_dbm
         (n_y, n_x) power of the sum of the paths' fields [dBm]; -inf where no path arrives.
     path_count
-        (n_y, n_x) number of paths, int64.
+        (n_y, n_x) number of paths, int64; 0 exactly where `rss_dbm` is -inf.
     grid, transmitter, config
         What the map was made with.
     plan_text, plan_sha256

@@ -36,7 +36,7 @@ def small_map() -> RadioMap:
     return RadioMap(
         rss_dbm=rss,
         rss_coherent_dbm=rss - rng.uniform(0.0, 9.0, grid.shape),
-        path_count=rng.integers(0, 10_000, grid.shape),
+        path_count=np.where(np.isneginf(rss), 0, rng.integers(9, 10_000, grid.shape)),
         grid=grid,
         transmitter=Transmitter((1.5, 2.25, 0.75), 17.5, 5.2e9, HalfWaveDipole(2.15)),
         config=TraceConfig(5, 0),
