@@ -13,6 +13,7 @@ metres, z is the height above the floor.
 """
 
 from floorplans.errors import PlanError
+from floorplans.frame import PlanFrame
 from floorplans.georeference import GeoOrigin
 from floorplans.loading import builtin_names, load, loads, save
 from floorplans.materials import (
@@ -40,6 +41,7 @@ __all__ = [
     "OpeningKind",
     "Panel",
     "PlanError",
+    "PlanFrame",
     "PlanMaterial",
     "PlanTransmitter",
     "SheetMaterial",

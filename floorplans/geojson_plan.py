@@ -3,8 +3,9 @@
 The collection has the foreign member ``rssnav_plan`` with every key of the plan's TOML file that is
 not geometry. The outline, each wall, opening and transmitter, the source and the start are
 features; a feature's properties are the keys of its table in the TOML file. Coordinates are
-longitude and latitude if the plan has an origin; otherwise they are the plan's metres, with
-``"crs": null`` as in GeoJSON 2008 for coordinates without a place on the Earth.
+longitude and latitude if the plan has an origin; otherwise they are metres, of the drawing that the
+plan was turned from or its own, with ``"crs": null`` as in GeoJSON 2008 for coordinates without a
+place on the Earth.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from floorplans.errors import PlanError
+from floorplans.frame import PlanFrame
 from floorplans.georeference import GeoOrigin
 from floorplans.loading import from_data
 from floorplans.plan import FloorPlan
@@ -110,10 +112,10 @@ def _wall_features(plan: FloorPlan, wall: Wall, table: Json, index: int) -> list
 
 
 def _feature(plan: FloorPlan, kind: str, points: Any, properties: Json) -> Json:
-    """Create a feature; if its geometry is in degrees, a property keeps the exact metres."""
-    if plan.origin is not None:
+    """Create a feature; if its geometry is in other coordinates, a property keeps the plan's."""
+    if plan.origin is not None or plan.frame is not None:
         properties = {**properties, "points_m": points}
-        points = _mapped(points, plan.origin.to_degrees)
+        points = _mapped(points, _from_plan(plan))
     return {
         "type": "Feature",
         "properties": properties,
@@ -121,14 +123,29 @@ def _feature(plan: FloorPlan, kind: str, points: Any, properties: Json) -> Json:
     }
 
 
+def _from_plan(plan: FloorPlan) -> Callable[[Points], Points]:
+    """Conversion from the plan's coordinates to those of the file."""
+    if plan.origin is not None:
+        return plan.origin.to_degrees
+    assert plan.frame is not None
+    return plan.frame.to_drawing
+
+
+def _to_plan(data: Json) -> Callable[[Points], Points] | None:
+    """Conversion from the file's coordinates to the plan's; None if they are the same."""
+    if "origin" in data:
+        return GeoOrigin(**data["origin"]).to_plan
+    return PlanFrame(**data["frame"]).to_plan if "frame" in data else None
+
+
 def _plan_data(collection: Mapping[str, Any]) -> Json:
     """Return the keys and values of the plan's TOML file."""
     data: Json = dict(collection[MEMBER])
-    origin = GeoOrigin(**data["origin"]) if "origin" in data else None
+    to_plan = _to_plan(data)
     walls: dict[int, Json] = {}
     for feature in collection["features"]:
         table = dict(feature["properties"])
-        kind, points = table.pop("kind"), _points(feature, table.pop("points_m", None), origin)
+        kind, points = table.pop("kind"), _points(feature, table.pop("points_m", None), to_plan)
         if kind == "outline":
             data["outline"], *holes = points
             data |= {"holes": holes} if holes else {}
@@ -145,12 +162,14 @@ def _plan_data(collection: Mapping[str, Any]) -> Json:
     return {**data, "walls": list(walls.values())}
 
 
-def _points(feature: Mapping[str, Any], exact: Any, origin: GeoOrigin | None) -> Any:
+def _points(
+    feature: Mapping[str, Any], exact: Any, to_plan: Callable[[Points], Points] | None
+) -> Any:
     """Coordinates of a feature [m]: the exact ones, unless its geometry was moved since."""
     coordinates = feature["geometry"]["coordinates"]
-    if origin is None:
+    if to_plan is None:
         return coordinates
-    points = _mapped(coordinates, origin.to_plan)
+    points = _mapped(coordinates, to_plan)
     if exact is not None and _nearly_equal(points, exact):
         return exact
     return points

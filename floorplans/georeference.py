@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from math import cos, isfinite, radians, sin
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from floorplans.errors import Place, PlanError
+from floorplans.frame import rotation
 
 if TYPE_CHECKING:
     from pyproj import Transformer
@@ -47,11 +48,11 @@ class GeoOrigin:
         (n, 2) float64
         """
         east, north = self._transformer.transform(degrees[:, 0], degrees[:, 1])
-        return np.column_stack([east, north]) @ _turn(self.rotation_deg)
+        return np.column_stack([east, north]) @ rotation(self.rotation_deg)
 
     def to_degrees(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Convert (x, y) of the plan [m] to (longitude, latitude) [degrees], both (n, 2)."""
-        east, north = (points @ _turn(self.rotation_deg).T).T
+        east, north = (points @ rotation(self.rotation_deg).T).T
         return np.column_stack(self._transformer.transform(east, north, direction="INVERSE"))
 
     @property
@@ -67,12 +68,6 @@ def check_origin(origin: GeoOrigin) -> None:
         value = getattr(origin, key)
         if not (isfinite(value) and abs(value) <= limit):
             raise PlanError(f"expected {-limit:g} to {limit:g} [degrees]", place, value)
-
-
-def _turn(angle_deg: float) -> NDArray[np.float64]:
-    """Matrix that maps rows (east, north) to rows (x, y) of rotated axes."""
-    c, s = cos(radians(angle_deg)), sin(radians(angle_deg))
-    return np.array([[c, -s], [s, c]])
 
 
 @cache

@@ -18,6 +18,7 @@ from atomicfiles import atomic_write
 from floorplans.checks.materials import check_materials
 from floorplans.checks.walls import check_openings, opening_kind
 from floorplans.errors import Place, PlanError, format_place
+from floorplans.frame import PlanFrame
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import Own, by_name
 from floorplans.plan import FloorPlan
@@ -33,9 +34,10 @@ from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 PLAN_KEYS = (
     "name", "format", "height_m", "floor_material", "floor_thickness_m", "ceiling_material",
     "ceiling_thickness_m", "source", "start", "outline", "holes", "material_edition", "materials",
-    "origin", "transmitters", "defaults", "walls",
+    "origin", "frame", "transmitters", "defaults", "walls",
 )  # fmt: skip
 ORIGIN_KEYS = ("longitude_deg", "latitude_deg", "rotation_deg")
+FRAME_KEYS = ("x_m", "y_m", "rotation_deg")
 DEFAULTS_KEYS = ("material", "thickness_m")
 WALL_KEYS = ("points", "arc", "material", "thickness_m", "height_m", "openings")
 OPENING_KEYS = ("kind", "offset_m", "width_m", "sill_m", "head_m", "material", "thickness_m")
@@ -192,6 +194,7 @@ def _read_unchecked(table: Table) -> PlanFile:
         floor_thickness_m=table.number("floor_thickness_m", _layers_m(floor, own, 0.2)),
         ceiling_thickness_m=table.number("ceiling_thickness_m", _layers_m(ceiling, own, 0.2)),
         origin=_read_origin(table),
+        frame=_read_frame(table),
         materials=materials,
         material_edition=table.optional_text("material_edition"),
         transmitters=read_transmitters(table),
@@ -225,6 +228,13 @@ def _read_origin(table: Table) -> GeoOrigin | None:
         origin.number("latitude_deg"),
         origin.number("rotation_deg", 0.0),
     )
+
+
+def _read_frame(table: Table) -> PlanFrame | None:
+    if "frame" not in table.data:
+        return None
+    frame = table.table("frame", FRAME_KEYS)
+    return PlanFrame(*(frame.number(key, 0.0) for key in FRAME_KEYS))
 
 
 def _ring(points: Corners, place: Place) -> Corners:

@@ -49,6 +49,8 @@ class FloorPlan(UncheckedPlan):
         tracer's choice.
     transmitters : tuple of PlanTransmitter
         Access points and the like, each with an id; the source is not one of them.
+    frame : PlanFrame or None
+        Where the plan lies in the drawing it was imported from, if it was turned.
 
     Raises
     ------

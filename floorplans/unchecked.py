@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from floorplans.errors import Place
+from floorplans.frame import PlanFrame
 from floorplans.georeference import GeoOrigin
 from floorplans.materials import MATERIAL_COLOURS, OWN_COLOUR, Own, PlanMaterial, by_name
 from floorplans.solid_regions import SolidRegion, solid_regions
@@ -37,6 +38,7 @@ class UncheckedPlan:
     materials: tuple[PlanMaterial, ...] = ()
     material_edition: str | None = None
     transmitters: tuple[PlanTransmitter, ...] = ()
+    frame: PlanFrame | None = None
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

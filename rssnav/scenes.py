@@ -7,7 +7,15 @@ from raytrace import Dielectric, Layer, Layered, Material, Scene, SceneError
 from raytrace.radio.itu import DEFAULT_EDITION
 from raytrace.radio.materials import find_material
 
-_NOT_OF_THE_SCENE = {"name", "source", "start", "transmitters", "origin", "material_edition"}
+_NOT_OF_THE_SCENE = {
+    "name",
+    "source",
+    "start",
+    "transmitters",
+    "origin",
+    "frame",
+    "material_edition",
+}
 """Attributes of a plan that its scene does not depend on; `PlanScene` compares the edition."""
 
 
@@ -63,7 +71,7 @@ class PlanScene:
     def fits(self, plan: FloorPlan, edition: str | None = None) -> bool:
         """Return whether a plan has the same building: all but what is placed in it.
 
-        Name, source, start, transmitters and origin may differ.
+        Name, source, start, transmitters, origin and frame may differ.
         """
         return edition_of(plan, edition) == self.scene.material_edition and all(
             getattr(plan, field.name) == getattr(self.plan, field.name)

@@ -17,6 +17,7 @@ from shapely.strtree import STRtree
 from floorplans.checks.materials import check_materials, check_slab
 from floorplans.checks.walls import check_wall
 from floorplans.errors import Place, PlanError
+from floorplans.frame import check_frame
 from floorplans.georeference import check_origin
 from floorplans.transmitters import check_transmitters
 from floorplans.unchecked import UncheckedPlan
@@ -109,6 +110,9 @@ def _value_faults(plan: UncheckedPlan) -> Iterator[PlanError]:
     origin = plan.origin
     if origin is not None:
         yield from _caught(lambda: check_origin(origin))
+    frame = plan.frame
+    if frame is not None:
+        yield from _caught(lambda: check_frame(frame))
 
 
 def _caught(check: Callable[[], None]) -> Iterator[PlanError]:

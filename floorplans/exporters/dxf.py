@@ -15,6 +15,7 @@ import ezdxf
 from ezdxf import units
 from ezdxf.document import Drawing
 from ezdxf.layouts.layout import Modelspace
+from ezdxf.math import Matrix44
 
 from floorplans.exporters.formats import ExportOptions, Files
 from floorplans.pictures.symbols import DOUBLE_DOOR_M, WallStrips
@@ -46,6 +47,10 @@ def render_dxf(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
         space.add_point(transmitter.position, dxfattribs={"layer": "TRANSMITTER"})
     if plan.start is not None:
         space.add_point(plan.start, dxfattribs={"layer": "START"})
+    if plan.frame is not None:
+        to_drawing = Matrix44(plan.frame.matrix().T.ravel().tolist())
+        for entity in space:
+            entity.transform(to_drawing)
     text = StringIO()
     document.write(text)
     return {path.name: text.getvalue().encode(document.output_encoding, "dxfreplace")}

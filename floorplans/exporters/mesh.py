@@ -13,7 +13,7 @@ from trimesh.exchange.ply import export_ply
 from trimesh.exchange.stl import export_stl_ascii
 
 from floorplans.exporters.formats import ExportOptions, Files
-from floorplans.mesh import SheetMaterial, Triangles, mesh_of
+from floorplans.mesh import SheetMaterial, Triangles, WallMesh, mesh_of
 from floorplans.pictures.viewer_3d import add_triangles
 from floorplans.plan import FloorPlan
 
@@ -40,9 +40,20 @@ class Sheet(NamedTuple):
         return f"{self.part} {self.material.name} {1000 * self.material.thickness_m:.4g} mm"
 
 
-def sheets(plan: FloorPlan) -> Iterator[Sheet]:
-    """Yield the sheets of a plan: walls by material and thickness, then floor and ceiling."""
+def mesh_in_drawing(plan: FloorPlan, *, single_precision: bool) -> WallMesh:
+    """Mesh of a plan in the coordinates of the drawing it was imported from, if any.
+
+    Single precision leaves out a position that it could not hold to the millimetre.
+    """
     walls = plan.to_mesh()
+    if plan.frame is not None:
+        walls.mesh.apply_transform(plan.frame.matrix(single_precision=single_precision))
+    return walls
+
+
+def sheets(plan: FloorPlan, *, single_precision: bool = True) -> Iterator[Sheet]:
+    """Yield the sheets of a plan: walls by material and thickness, then floor and ceiling."""
+    walls = mesh_in_drawing(plan, single_precision=single_precision)
     triangles = np.asarray(walls.mesh.triangles, dtype=np.float64)
     is_wall = np.ptp(triangles[:, :, 2], axis=1) > 0.0
     for index, material in enumerate(walls.materials):
@@ -67,7 +78,7 @@ def render_glb(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
 
 def render_ply(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
     """Render a plan as binary PLY: colours, and a `material` per face that the header explains."""
-    walls = plan.to_mesh()
+    walls = mesh_in_drawing(plan, single_precision=True)
     mesh = walls.mesh.copy()
     mesh.face_attributes["material"] = walls.face_material.astype(np.int32)
     content = export_ply(mesh, include_attributes=True)
@@ -82,7 +93,7 @@ def render_ply(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
 def render_stl(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
     """Render a plan as STL in text: a solid for each kind of sheet, named after its material."""
     solids: list[str] = []
-    for sheet in sheets(plan):
+    for sheet in sheets(plan, single_precision=False):
         mesh = mesh_of(sheet.triangles)
         mesh.metadata["name"] = sheet.name.replace(" ", "_")
         solids.append(export_stl_ascii(mesh))
@@ -91,4 +102,5 @@ def render_stl(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
 
 def render_obj(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
     """Render a plan as OBJ, one object in the materials' colours."""
-    return {path.name: str(plan.to_mesh().mesh.export(file_type="obj")).encode()}
+    mesh = mesh_in_drawing(plan, single_precision=False).mesh
+    return {path.name: str(mesh.export(file_type="obj")).encode()}

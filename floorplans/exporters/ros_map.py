@@ -67,8 +67,9 @@ def _pixels(
     plan: FloorPlan, height_m: float, pixel_m: float
 ) -> tuple[NDArray[np.uint8], tuple[float, float]]:
     """Return the picture's values (n_y, n_x), bottom row first, and its lower left corner [m]."""
-    bodies = shapely.union_all(_bodies(plan, height_m, pixel_m))
-    x_min, y_min, x_max, y_max = shapely.total_bounds([plan.outline, bodies])
+    bodies = _in_drawing(plan, shapely.union_all(_bodies(plan, height_m, pixel_m)))
+    outline = _in_drawing(plan, plan.outline)
+    x_min, y_min, x_max, y_max = shapely.total_bounds([outline, bodies])
     corner = (float(x_min) - _MARGIN_M, float(y_min) - _MARGIN_M)
     sides_m = np.array([x_max - x_min, y_max - y_min]) + 2 * _MARGIN_M
     n_x, n_y = np.ceil(sides_m / pixel_m).tolist()
@@ -83,9 +84,14 @@ def _pixels(
         np.array(low + (np.arange(int(n)) + 0.5) * pixel_m, dtype=np.float64)
         for low, n in zip(corner, (n_x, n_y), strict=True)
     )
-    values = np.where(_covered(plan.outline, x, y), FREE, UNKNOWN).astype(np.uint8)
+    values = np.where(_covered(outline, x, y), FREE, UNKNOWN).astype(np.uint8)
     values[_covered(bodies, x, y)] = OCCUPIED
     return values, corner
+
+
+def _in_drawing(plan: FloorPlan, geometry: BaseGeometry) -> BaseGeometry:
+    """Turn a geometry back to the drawing that the plan was imported from."""
+    return geometry if plan.frame is None else shapely.transform(geometry, plan.frame.to_drawing)
 
 
 def _bodies(plan: FloorPlan, height_m: float, pixel_m: float) -> list[BaseGeometry]:

@@ -48,6 +48,8 @@ class ImportOptions:
     tolerance_m : float or None
         How far a wall may be moved to make walls meet, and chords may deviate from an arc [m]; by
         default depends on the format.
+    keep_axes : bool
+        Keep the drawing's axes where most walls stand at an angle to them.
     layers : mapping of str to str
         Layer, class or type of the file -> KIND or KIND:MATERIAL; overrides the defaults.
     """
@@ -64,6 +66,7 @@ class ImportOptions:
     level: str | None = None
     scale_m: float | None = None
     tolerance_m: float | None = None
+    keep_axes: bool = False
     layers: Mapping[str, str] = field(default_factory=dict[str, str])
 
 

@@ -13,6 +13,7 @@ from floorplans.errors import PlanError
 from floorplans.importers.assembly.assemble import assemble
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported
+from floorplans.importers.own_axes import oblique_deg, placed, turned
 from floorplans.plan import FloorPlan
 
 Reader = Callable[[Path, ImportOptions], Draft | FloorPlan]
@@ -140,7 +141,9 @@ def import_plan(path: str | Path, options: ImportOptions | None = None) -> Impor
         drafted = read_draft(path, options)
         if isinstance(drafted, FloorPlan):
             return Imported.from_plan(drafted, options, path.name)
-        return assemble(drafted, options, path.name)
+        turn_deg = 0.0 if options.keep_axes else oblique_deg(drafted.walls)
+        own = turned(drafted, turn_deg) if turn_deg else drafted
+        return placed(assemble(own, options, path.name), drafted, turn_deg)
     except PlanError as error:
         raise error.located(str(path)) from error
     except GEOSException as error:

@@ -48,6 +48,9 @@ def _top_level(plan: UncheckedPlan) -> Iterator[str]:
         yield f"material_edition = {_text(plan.material_edition)}"
     if plan.origin is not None:
         yield f"origin = {{ {', '.join(_origin(plan.origin))} }}"
+    if plan.frame is not None:
+        numbers = {key: _number(getattr(plan.frame, key)) for key in ("x_m", "y_m", "rotation_deg")}
+        yield f"frame = {{ {', '.join(f'{key} = {text}' for key, text in numbers.items())} }}"
 
 
 def _origin(origin: GeoOrigin) -> Iterator[str]:

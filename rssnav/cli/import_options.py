@@ -76,6 +76,12 @@ WallTolerance = Annotated[
         show_default="the format's",
     ),
 ]
+KeepAxes = Annotated[
+    bool,
+    typer.Option(
+        "--keep-axes", help="Do not turn a building that is drawn at an angle to its own axes."
+    ),
+]
 Layer = Annotated[
     list[str] | None,
     typer.Option(

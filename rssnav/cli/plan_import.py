@@ -13,6 +13,7 @@ from rssnav.cli.console import print_json, print_table, say
 from rssnav.cli.import_options import (
     CeilingHeight,
     ImportedFile,
+    KeepAxes,
     Layer,
     Layers,
     Level,
@@ -66,6 +67,7 @@ def import_file(
     level: Level = None,
     scale: Scale = None,
     tolerance: WallTolerance = None,
+    keep_axes: KeepAxes = False,
     layer: Layer = None,
     layers: Layers = None,
     save_layers: SaveLayers = None,
@@ -93,6 +95,7 @@ def import_file(
         level=level,
         scale_m=scale,
         tolerance_m=tolerance,
+        keep_axes=keep_axes,
         layers=layers_of(layer, layers),
     )
     if output.exists() and not force:

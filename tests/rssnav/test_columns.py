@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from small_plans import box, ring
 
 from floorplans import Opening, Wall
-from raytrace import TraceConfig
+from raytrace import RadioMap, TraceConfig
 from raytrace.results.layers import EMPTY
 from rssnav import GridWorld
 from rssnav.maps import cells_inside, make_map
@@ -29,7 +29,9 @@ def radio_map():
     return make_map(PLAN, config=TraceConfig(1, 0, max_transmissions=1))
 
 
-def test_nothing_is_received_in_a_column(radio_map) -> None:
+def test_nothing_is_received_in_a_column(radio_map, tmp_path) -> None:
+    radio_map.save(tmp_path / "map.h5")
+    radio_map = RadioMap.load(tmp_path / "map.h5")
     assert not cells_inside(PLAN, radio_map.grid)[INSIDE]
     assert cells_inside(PLAN, radio_map.grid).sum() == 23
     for name, layer in radio_map.layers.items():

@@ -90,9 +90,13 @@ def test_yaw_turns_the_map(tmp_path) -> None:
     turned = import_plan(path).plan
     assert turned.outline.area == pytest.approx(24.0, rel=0.02)
     sides = {
-        round(np.degrees(np.arctan2(*np.subtract(w.end, w.start)[::-1])) % 90) for w in turned.walls
+        round(np.degrees(np.arctan2(*np.subtract(w.end, w.start)[::-1])) % 90) % 90
+        for w in turned.walls
     }
-    assert sides == {30}
+    assert sides == {0}
+    assert turned.frame.rotation_deg == pytest.approx(30.0, abs=0.1)
+    margin = np.array([facts["origin"][:2]])  # the picture begins at (1, 2), before the building
+    assert turned.frame.to_drawing(margin)[0] == pytest.approx((1.0, 2.0), abs=0.05)
 
 
 def test_plan_of_any_name_is_written(tmp_path) -> None:

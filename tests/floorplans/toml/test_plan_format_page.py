@@ -9,6 +9,7 @@ from documents import ROOT
 import floorplans
 from floorplans.loading import (
     DEFAULTS_KEYS,
+    FRAME_KEYS,
     OPENING_KEYS,
     ORIGIN_KEYS,
     PLAN_KEYS,
@@ -33,6 +34,7 @@ def test_example_is_a_plan_that_uses_every_key() -> None:
     assert set(PLAN_KEYS) - set(table) == {"floor_thickness_m"}
     assert set(table["defaults"]) == set(DEFAULTS_KEYS)
     assert set(table["origin"]) == set(ORIGIN_KEYS)
+    assert set(table["frame"]) == set(FRAME_KEYS)
     assert {key for row in table["transmitters"] for key in row} == set(TRANSMITTER_KEYS)
     assert {key for wall in table["walls"] for key in wall} == set(WALL_KEYS)
     assert {key for opening in openings for key in opening} == set(OPENING_KEYS)
@@ -46,7 +48,7 @@ def test_offsets_of_the_example_lie_where_its_comment_says() -> None:
     assert [o.kind for o in north.openings] == ["window"]
 
 
-KEYS = (*PLAN_KEYS, *ORIGIN_KEYS, *TRANSMITTER_KEYS, *WALL_KEYS, *OPENING_KEYS)
+KEYS = (*PLAN_KEYS, *ORIGIN_KEYS, *FRAME_KEYS, *TRANSMITTER_KEYS, *WALL_KEYS, *OPENING_KEYS)
 
 
 @pytest.mark.parametrize("word", [*KEYS, *floorplans.MATERIALS])
