@@ -35,7 +35,7 @@ from rssnav.cli.options import (
     in_bytes,
 )
 from rssnav.kernel_cache import tracer_cache
-from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM, make_map
+from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM, cells_inside, make_map
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -110,7 +110,7 @@ def map_plan(
         )
     if picture is not None:
         _draw(loaded, radio_map, picture, style)
-    summary = _summary(radio_map, output, picture)
+    summary = _summary(loaded, radio_map, output, picture)
     if as_json:
         print_json({"plan": plan, **summary})
     else:
@@ -167,8 +167,11 @@ def _draw(plan: FloorPlan, radio_map: RadioMap, picture: Path, style: str | None
         save_map_picture(plan, radio_map, picture)
 
 
-def _summary(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[str, Any]:
+def _summary(
+    plan: FloorPlan, radio_map: RadioMap, output: Path, picture: Path | None
+) -> dict[str, Any]:
     covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
+    inside = cells_inside(plan, radio_map.grid)
     return {
         "file": str(output),
         "picture": None if picture is None else str(picture),
@@ -176,7 +179,8 @@ def _summary(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[st
         "cell_size_m": radio_map.grid.cell_size_m,
         "height_m": radio_map.grid.height_m,
         "cells": radio_map.rss_dbm.size,
-        "cells_without_path": radio_map.rss_dbm.size - covered.size,
+        "cells_outside": int(np.count_nonzero(~inside)),
+        "cells_without_path": int(np.count_nonzero(inside & np.isneginf(radio_map.rss_dbm))),
         "rss_dbm_min": float(covered.min()) if covered.size else None,
         "rss_dbm_max": float(covered.max()) if covered.size else None,
         "paths": int(radio_map.path_count.sum()),
@@ -187,12 +191,14 @@ def _summary(radio_map: RadioMap, output: Path, picture: Path | None) -> dict[st
 
 def _print_summary(summary: dict[str, Any]) -> None:
     n_y, n_x = summary["shape"]
+    outside = summary["cells_outside"]
+    outside = f", {outside} outside the building" if outside else ""
     rss = "no cell has a path"
     if summary["rss_dbm_min"] is not None:
         rss = f"{summary['rss_dbm_min']:.2f} to {summary['rss_dbm_max']:.2f} dBm"
     pairs = [
         ("map", summary["file"]),
-        ("cells", f"{n_x} x {n_y}, {summary['cells_without_path']} of them without a path"),
+        ("cells", f"{n_x} x {n_y}{outside}, {summary['cells_without_path']} without a path"),
         ("RSS", rss),
         ("paths", f"{summary['paths']:,}".replace(",", " ")),
         ("tracing", f"{summary['tracing_s']:.1f} s"),

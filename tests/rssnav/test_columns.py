@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from cli_plans import done
 from matplotlib.figure import Figure
 from small_plans import box, ring
 
+import floorplans
 from floorplans import Opening, Wall
 from raytrace import RadioMap, TraceConfig
 from raytrace.results.layers import EMPTY
 from rssnav import GridWorld
+from rssnav.explorer.map_figure import MapFigure
 from rssnav.maps import cells_inside, make_map
 from rssnav.pictures.radio_map import draw_radio_map
 from rssnav.reachability import reach_by_speed
@@ -80,3 +84,28 @@ def test_cells_outside_an_outline_that_is_no_rectangle_are_blank() -> None:
     draw_radio_map(plan, radio_map, ax)
     (hatched,) = (artist for artist in ax.collections if artist.get_gid() == "no path")
     assert len(hatched.get_paths()) == 6  # the wing, without the quarter that is outside
+
+
+def test_explorer_hatches_the_same_cells() -> None:
+    radio_map = make_map(PLAN, config=TraceConfig(0, 0))
+
+    def ignore(*_: object) -> None:
+        pass
+
+    figure = MapFigure(PLAN, 2.0, on_move=ignore, on_drag=ignore, on_tap=ignore)
+    figure.show_map(radio_map)
+    (hatched,) = (
+        r for r in figure.model.renderers if getattr(r.glyph, "hatch_pattern", None) == "cross"
+    )
+    shown = np.column_stack([hatched.data_source.data[axis] for axis in "xy"])
+    dark = np.isneginf(radio_map.rss_dbm) & cells_inside(PLAN, radio_map.grid)
+    assert np.allclose(shown, radio_map.grid.points()[dark.ravel(), :2])
+
+
+def test_summary_of_a_map_counts_what_is_outside_apart(tmp_path) -> None:
+    floorplans.save(PLAN, tmp_path / "a.toml")
+    options = ("--reflections", "0", "--diffractions", "0", "--json")
+    told = json.loads(done("map", tmp_path / "a.toml", "-o", tmp_path / "a.h5", *options))
+    radio_map = RadioMap.load(tmp_path / "a.h5")
+    assert told["cells_outside"] == 1
+    assert told["cells_without_path"] == np.isneginf(radio_map.rss_dbm).sum() - 1
