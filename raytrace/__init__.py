@@ -34,9 +34,10 @@ from raytrace.radio.transmitter import Transmitter
 from raytrace.results.path_statistics import PathStatistics
 from raytrace.results.paths import ImpulseResponse, Paths
 from raytrace.results.radio_map import RadioMap
+from raytrace.results.transmitter_maps import TransmitterMaps
 from raytrace.scene import Scene
 from raytrace.solver.cost_estimate import CostEstimate, estimate_cost
-from raytrace.trace import compute_radio_map, received_power, trace_paths
+from raytrace.trace import compute_radio_map, compute_radio_maps, received_power, trace_paths
 
 __all__ = [
     "ABSORBER",
@@ -67,7 +68,9 @@ __all__ = [
     "TraceConfig",
     "TraceStoppedError",
     "Transmitter",
+    "TransmitterMaps",
     "compute_radio_map",
+    "compute_radio_maps",
     "dielectrics_of",
     "estimate_cost",
     "find_material",

@@ -3,6 +3,7 @@
 import platform
 import time
 import warnings
+from collections.abc import Mapping
 from dataclasses import fields
 from importlib.metadata import version
 from typing import Any
@@ -11,7 +12,7 @@ import numpy as np
 
 from raytrace.arrays import Floats
 from raytrace.config import TraceConfig
-from raytrace.errors import SceneWarning
+from raytrace.errors import SceneError, SceneWarning
 from raytrace.grid import Grid
 from raytrace.kernels.sums import Sums
 from raytrace.memory import memory_limit
@@ -20,6 +21,7 @@ from raytrace.radio.transmitter import Transmitter
 from raytrace.results.layers import layers_of, received_dbm
 from raytrace.results.paths import Paths
 from raytrace.results.radio_map import RadioMap
+from raytrace.results.transmitter_maps import TransmitterMaps
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import Progress, sum_paths
 from raytrace.solver.evaluation import evaluation_of
@@ -163,6 +165,62 @@ def compute_radio_map(
         provenance=_provenance(scene, time.perf_counter() - started),
         receive_antenna=receive_antenna or HalfWaveDipole(),
     )
+
+
+def compute_radio_maps(
+    scene: Scene,
+    transmitters: Mapping[str, Transmitter],
+    grid: Grid,
+    config: TraceConfig | None = None,
+    *,
+    receive_antenna: Antenna | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    stop: Stop | None = None,
+    max_memory_bytes: int | None = None,
+) -> TransmitterMaps:
+    """Sum every path at each cell of a grid, for each of several transmitters.
+
+    Parameters
+    ----------
+    scene, grid, config, receive_antenna, threads, stop, max_memory_bytes
+        As for `compute_radio_map`; the scene is prepared once for all.
+    transmitters
+        At least one, by name.
+    progress
+        Called with finished parts and all parts, `PARTS` of them for each transmitter.
+
+    Raises
+    ------
+    ValueError
+        For no transmitters.
+    SceneError
+        Where a transmitter is not inside the building; the message names it.
+    TraceStoppedError, MemoryLimitError
+        As for `compute_radio_map`.
+    """
+    maps: dict[str, RadioMap] = {}
+    for number, (name, transmitter) in enumerate(transmitters.items()):
+        try:
+            maps[name] = compute_radio_map(
+                scene, transmitter, grid, config, receive_antenna=receive_antenna,
+                threads=threads, progress=part_of(progress, number, len(transmitters)),
+                stop=stop, max_memory_bytes=max_memory_bytes,
+            )  # fmt: skip
+        except SceneError as error:
+            raise SceneError(f"transmitter {name!r}: {error}") from error
+    return TransmitterMaps(maps)
+
+
+PARTS = 1000
+"""Parts that `compute_radio_maps` divides the work for a transmitter into."""
+
+
+def part_of(progress: Progress | None, number: int, count: int) -> Progress | None:
+    """Progress of one of several equal pieces of work, as progress of all."""
+    if progress is None:
+        return None
+    return lambda done, total: progress(number * PARTS + PARTS * done // total, count * PARTS)
 
 
 def received_power(

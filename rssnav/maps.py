@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 import floorplans
 from floorplans import FloorPlan
 from raytrace import (
+    Antenna,
     Grid,
     HalfWaveDipole,
     MapFileError,
@@ -28,13 +30,13 @@ from rssnav.cost_notice import announcement
 from rssnav.keeping import save_or_rescue
 from rssnav.progress import Progress
 from rssnav.scenes import PlanScene, edition_of, scene_of
+from rssnav.transmitters import FREQUENCY_HZ, POWER_DBM
 
 Notice = Callable[[str], None]
+Content = TypeVar("Content")
 
 CELL_SIZE_M = 1.0
 HEIGHT_M = 2.0
-POWER_DBM = 25.0
-FREQUENCY_HZ = 2.4e9
 
 
 @dataclass(frozen=True)
@@ -48,11 +50,13 @@ class MapRequest:
     grid
         Where the receivers are.
     transmitter
-        At the plan's source.
+        What sends.
     config
         Limits of the trace.
     edition
         Of ITU-R P.2040, for the built-in materials.
+    receive_antenna
+        The receivers' antenna.
     """
 
     plan: FloorPlan
@@ -60,6 +64,7 @@ class MapRequest:
     transmitter: Transmitter
     config: TraceConfig
     edition: str
+    receive_antenna: Antenna
 
     def difference(self, radio_map: RadioMap) -> str | None:
         """Return how a map differs from the requested one, in words; None where it does not."""
@@ -69,7 +74,10 @@ class MapRequest:
             ("for a different plan", radio_map.plan_sha256 == self.plan.sha256),
             ("with a different trace configuration", radio_map.config == self.config),
             ("for a different transmitter", _same(radio_map.transmitter, self.transmitter)),
-            ("for a different receive antenna", radio_map.receive_antenna == HalfWaveDipole()),
+            (
+                "for a different receive antenna",
+                as_stored(radio_map.receive_antenna) == as_stored(self.receive_antenna),
+            ),
             ("on a different grid", radio_map.grid.same_as(self.grid)),
             *(
                 (f"with a different {key.replace('_', ' ')}", found.get(key) == value)
@@ -95,7 +103,11 @@ class MapRequest:
             if notice is not None and (words := announcement(*made_with, threads)) is not None:
                 notice(words)
             radio_map = compute_radio_map(
-                *made_with, threads=threads, progress=progress, max_memory_bytes=max_memory_bytes
+                *made_with,
+                receive_antenna=self.receive_antenna,
+                threads=threads,
+                progress=progress,
+                max_memory_bytes=max_memory_bytes,
             )
         except SceneError as error:
             raise SceneError(f"plan {self.plan.name!r}: {error}") from error
@@ -117,6 +129,8 @@ def make_map(
     config: TraceConfig | None = None,
     power_dbm: float = POWER_DBM,
     frequency_hz: float = FREQUENCY_HZ,
+    transmitter: Transmitter | None = None,
+    receive_antenna: Antenna | None = None,
     edition: str | None = None,
     scene: PlanScene | None = None,
     threads: int | None = None,
@@ -143,6 +157,10 @@ def make_map(
         Power fed to the source's antenna [dBm].
     frequency_hz : float
         Carrier frequency [Hz].
+    transmitter : Transmitter, optional
+        What sends, in place of a vertical dipole at the source with that power and frequency.
+    receive_antenna : Antenna, optional
+        The receivers' antenna; a vertical dipole by default.
     edition : str, optional
         Of ITU-R P.2040, for the built-in materials; by default the plan's, or the newest.
     scene : PlanScene, optional
@@ -172,23 +190,16 @@ def make_map(
     OSError
         Where the map cannot be saved; the message says where it is kept instead, if anywhere.
     """
-    if not 0.0 < height_m < plan.height_m:
-        raise ValueError(
-            f"height_m = {height_m:g}: plan {plan.name!r} needs a height between its floor and its "
-            f"ceiling, above 0 and below {plan.height_m:g} m"
-        )
+    check_height(plan, height_m)
     edition = edition_of(plan, edition)
-    if scene is not None and not scene.fits(plan, edition):
-        raise ValueError(
-            f"the scene of plan {scene.plan.name!r}, materials of {scene.scene.material_edition}, "
-            f"does not fit plan {plan.name!r}, {edition}: expected PlanScene.of(plan, edition)"
-        )
+    check_scene(plan, scene, edition)
     request = MapRequest(
         plan,
         Grid.over(plan.bounds, cell_size_m, height_m),
-        Transmitter(plan.require_source(), power_dbm, frequency_hz),
+        transmitter or Transmitter(plan.require_source(), power_dbm, frequency_hz),
         config or TraceConfig(),
         edition,
+        receive_antenna or HalfWaveDipole(),
     )
     compute = partial(
         request.compute, scene and scene.scene, threads, progress, notice, max_memory_bytes
@@ -196,11 +207,31 @@ def make_map(
     if path is None:
         return compute()
     path = Path(path)
-    if not force and (current := _current_map(request, path, notice)) is not None:
-        return current
+    if not force:
+        current = current_content(path, RadioMap.load, request.difference, notice)
+        if current is not None:
+            return current
     radio_map = compute()
     save_or_rescue(radio_map.save, path)
     return radio_map
+
+
+def check_height(plan: FloorPlan, height_m: float) -> None:
+    """Raise ValueError for receivers that are not between floor and ceiling."""
+    if not 0.0 < height_m < plan.height_m:
+        raise ValueError(
+            f"height_m = {height_m:g}: plan {plan.name!r} needs a height between its floor and its "
+            f"ceiling, above 0 and below {plan.height_m:g} m"
+        )
+
+
+def check_scene(plan: FloorPlan, scene: PlanScene | None, edition: str) -> None:
+    """Raise ValueError for the scene of another building."""
+    if scene is not None and not scene.fits(plan, edition):
+        raise ValueError(
+            f"the scene of plan {scene.plan.name!r}, materials of {scene.scene.material_edition}, "
+            f"does not fit plan {plan.name!r}, {edition}: expected PlanScene.of(plan, edition)"
+        )
 
 
 def require_map_for(plan: FloorPlan, radio_map: RadioMap, path: str | Path | None = None) -> None:
@@ -230,13 +261,35 @@ def require_map_for(plan: FloorPlan, radio_map: RadioMap, path: str | Path | Non
     )
 
 
-def _current_map(request: MapRequest, path: Path, notice: Notice | None) -> RadioMap | None:
-    """Return the map in a file if it is the requested one, None if it must be computed."""
+def current_content(
+    path: Path,
+    load: Callable[[Path], Content],
+    difference: Callable[[Content], str | None],
+    notice: Notice | None,
+) -> Content | None:
+    """Return what a file holds if it is what is wanted, None if it must be computed.
+
+    Parameters
+    ----------
+    path
+        The file.
+    load
+        Reads it.
+    difference
+        Says how its content differs from what is wanted.
+    notice
+        Called with a sentence about the file.
+
+    Raises
+    ------
+    MapFileError
+        For a file that is no radio map.
+    """
     report = notice or _drop_notice
     if not path.exists():
         return None
     try:
-        radio_map = RadioMap.load(path)
+        content = load(path)
     except MapFileError as error:
         if not is_radio_map(path):
             raise MapFileError(
@@ -247,11 +300,11 @@ def _current_map(request: MapRequest, path: Path, notice: Notice | None) -> Radi
             ) from error
         report(f"{path} is damaged or of a different version; computing it again")
         return None
-    difference = request.difference(radio_map)
-    if difference is None:
+    found = difference(content)
+    if found is None:
         report(f"{path} is up to date")
-        return radio_map
-    report(f"{path} was {difference}; computing it again")
+        return content
+    report(f"{path} was {found}; computing it again")
     return None
 
 

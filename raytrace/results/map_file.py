@@ -10,7 +10,7 @@ believed before it is checked.
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import h5py
 import numpy as np
@@ -30,14 +30,18 @@ from raytrace.results.antenna_file import (
     read_receive_antenna,
     write_pattern,
 )
-from raytrace.results.checked_hdf5 import LARGEST, Checked, Hdf5ContentError, open_checked
+from raytrace.results.checked_hdf5 import LARGEST, Checked, Hdf5ContentError, Shape, open_checked
 from raytrace.results.hdf5 import hdf5_bytes, write_array
 from raytrace.results.hdf5_content import HDF5_SIGNATURE
 from raytrace.results.layer_checks import contradictions
 from raytrace.results.layers import LAYERS
 
 FORMAT = "rssnav radio map"
-FORMAT_VERSION = 1
+FORMAT_VERSION, SEVERAL_VERSION = 1, 2
+_CONTENTS = {FORMAT_VERSION: "the map of one transmitter", SEVERAL_VERSION: "maps of transmitters"}
+"""Versions of files, and what they hold."""
+
+Contents = TypeVar("Contents")
 
 _MARKS = (FORMAT.encode(), b"rss_coherent_dbm")
 _MADE_WITH = "made_with_"
@@ -97,32 +101,58 @@ def write_map_file(radio_map: MapContents, path: Path) -> None:
 
 
 def _write(radio_map: MapContents, file: h5py.File) -> None:
-    for axis in ("y", "x"):
-        centres = getattr(radio_map.grid, axis)
-        write_array(file, axis, centres, "m", f"{axis} of the cell centres").make_scale(axis)
-    for name, layer in radio_map.layers.items():
-        data = write_array(file, name, layer, LAYERS[name].units, LAYERS[name].long_name)
-        data.dims[0].attach_scale(file["y"])
-        data.dims[1].attach_scale(file["x"])
+    write_layers(file, radio_map.grid, radio_map.layers)
     file.attrs.update(attributes_of(radio_map))
     write_pattern(radio_map.transmitter.antenna, file, TRANSMIT)
     write_pattern(radio_map.receive_antenna, file, RECEIVE)
 
 
+def write_layers(
+    file: h5py.File, grid: Grid, layers: Mapping[str, NDArray[Any]], further: str | None = None
+) -> None:
+    """Write the axes of a grid, and layers over them.
+
+    Parameters
+    ----------
+    file
+        Written to.
+    grid
+        The cells.
+    layers
+        (n_y, n_x) each, by name; with one more dimension before these if `further` is given.
+    further
+        Name of a scale that the file has for that dimension.
+    """
+    for axis in ("y", "x"):
+        centres = getattr(grid, axis)
+        write_array(file, axis, centres, "m", f"{axis} of the cell centres").make_scale(axis)
+    for name, layer in layers.items():
+        data = write_array(file, name, layer, LAYERS[name].units, LAYERS[name].long_name)
+        for dimension, axis in enumerate(("y", "x") if further is None else (further, "y", "x")):
+            data.dims[dimension].attach_scale(file[axis])
+
+
 def attributes_of(radio_map: MapContents) -> dict[str, Any]:
     """Return what made a map, as a file and a data set store it, without what is None."""
-    transmitter, grid = radio_map.transmitter, radio_map.grid
-    attributes = {
-        "format": FORMAT,
+    transmitter = radio_map.transmitter
+    return {
+        **common_attributes(radio_map),
         "format_version": FORMAT_VERSION,
-        "plan_text": radio_map.plan_text,
-        "plan_sha256": radio_map.plan_sha256,
-        "receiver_height_m": grid.height_m,
-        "cell_size_m": grid.cell_size_m,
         "transmitter_position_m": np.array(transmitter.position),
         "transmitter_power_dbm": transmitter.power_dbm,
         "frequency_hz": transmitter.frequency_hz,
         **antenna_attributes(TRANSMIT, transmitter.antenna),
+    }
+
+
+def common_attributes(radio_map: MapContents) -> dict[str, Any]:
+    """Return what made a map, without its transmitter and what is None."""
+    attributes = {
+        "format": FORMAT,
+        "plan_text": radio_map.plan_text,
+        "plan_sha256": radio_map.plan_sha256,
+        "receiver_height_m": radio_map.grid.height_m,
+        "cell_size_m": radio_map.grid.cell_size_m,
         **antenna_attributes(RECEIVE, radio_map.receive_antenna),
         **asdict(radio_map.config),
         **{f"{_MADE_WITH}{k}": v for k, v in radio_map.provenance.items()},
@@ -140,13 +170,18 @@ def read_map_file(path: Path) -> dict[str, Any]:
     MapFileError
         Where it is not a whole map of this version; the message names what is wrong.
     """
+    return read_checked(path, FORMAT_VERSION, _read)
+
+
+def read_checked(path: Path, version: int, read: Callable[[Checked], Contents]) -> Contents:
+    """Read a file of maps of a version; see `read_map_file` for errors."""
     if not path.exists():
         raise MissingMapError(path)
     try:
         with open_checked(path) as file:
-            error = _format_error(file, path)
+            error = _format_error(file, path, version)
             if error is None:
-                return _read(file)
+                return read(file)
     except Hdf5ContentError as problem:
         raise _damaged(path, str(problem)) from problem
     raise error
@@ -174,7 +209,7 @@ def _damaged(path: Path, problem: str) -> MapFileError:
     return MapFileError(f"{path}: {problem}; compute the map again", path, remedy="make_map")
 
 
-def _format_error(file: Checked, path: Path) -> MapFileError | None:
+def _format_error(file: Checked, path: Path, wanted: int) -> MapFileError | None:
     found = file.attribute("format") if "format" in file.attribute_names else None
     if not isinstance(found, str) or found != FORMAT:
         return MapFileError(
@@ -183,17 +218,30 @@ def _format_error(file: Checked, path: Path) -> MapFileError | None:
             path,
         )
     version = file.attribute("format_version")
-    if not isinstance(version, int) or version != FORMAT_VERSION:
-        return _damaged(path, f"format_version = {version!r}, expected {FORMAT_VERSION}")
+    if not isinstance(version, int) or version not in _CONTENTS:
+        return _damaged(path, f"format_version = {version!r}, expected {wanted}")
+    if version != wanted:
+        return MapFileError(
+            f"{path}: holds {_CONTENTS[version]}, expected {_CONTENTS[wanted]}", path
+        )
     return None
 
 
 def _read(file: Checked) -> dict[str, Any]:
-    grid, transmitter = _grid(file), _transmitter(file)
+    grid, transmitter = read_grid(file), _transmitter(file)
+    layers = read_layers(file, ("n_y", "n_x"))
+    check_layers(layers, grid, transmitter)
     return {
         "grid": grid,
-        **_layers(file, grid, transmitter),
+        **layers,
         "transmitter": transmitter,
+        **read_common(file),
+    }
+
+
+def read_common(file: Checked) -> dict[str, Any]:
+    """Read what `common_attributes` wrote but the grid: fields of `RadioMap` by name."""
+    return {
         "receive_antenna": read_receive_antenna(file),
         "config": _config(file),
         "plan_text": file.text("plan_text"),
@@ -202,7 +250,8 @@ def _read(file: Checked) -> dict[str, Any]:
     }
 
 
-def _grid(file: Checked) -> Grid:
+def read_grid(file: Checked) -> Grid:
+    """Read the cells; their centres must be in steps of their size."""
     x, y = (
         file.array(axis, np.float64, (f"n_{axis}",), low=-LARGEST, high=LARGEST)
         for axis in ("x", "y")
@@ -219,17 +268,20 @@ def _grid(file: Checked) -> Grid:
     return Grid(x, y, file.number("receiver_height_m"), cell_size_m)
 
 
-def _layers(file: Checked, grid: Grid, transmitter: Transmitter) -> dict[str, NDArray[Any]]:
-    """Read the layers that the file has; they must not contradict each other."""
-    layers = {
-        name: file.array(name, layer.dtype, ("n_y", "n_x"), low=layer.low, high=layer.high)
+def read_layers(file: Checked, shape: Shape) -> dict[str, NDArray[Any]]:
+    """Read the layers that a file has."""
+    return {
+        name: file.array(name, layer.dtype, shape, low=layer.low, high=layer.high)
         for name, layer in LAYERS.items()
         if layer.required or name in file
     }
+
+
+def check_layers(layers: Mapping[str, NDArray[Any]], grid: Grid, transmitter: Transmitter) -> None:
+    """Raise `Hdf5ContentError` for layers of a transmitter that contradict each other."""
     straight_m = _distances(grid, transmitter.position)
     for problem in contradictions(layers, straight_m, transmitter.power_dbm):
         raise Hdf5ContentError(problem)
-    return layers
 
 
 def _distances(grid: Grid, position: tuple[float, float, float]) -> NDArray[np.float64]:

@@ -14,7 +14,10 @@ import typer
 
 OUTPUT_FILES = ("output", "picture", "report", "save_layers")
 OUTPUT_FOLDERS = ("out",)
-INPUTS = ("plan", "map_file", "trainings", "file", "layers", "survey", "transmitters")
+INPUTS = (
+    "plan", "map_file", "trainings", "file", "layers", "survey", "transmitters", "antenna",
+    "receive_antenna",
+)  # fmt: skip
 """Names of the parameters that are files and folders."""
 
 

@@ -28,12 +28,12 @@ REMEDIES = {
 def is_anticipated(error: Exception) -> bool:
     """Return whether the user can correct an error, so that it needs no traceback."""
     from floorplans import PlanError
-    from raytrace import MapFileError, MemoryLimitError, SceneError
+    from raytrace import AntennaError, MapFileError, MemoryLimitError, SceneError
     from rssnav import ResultFileError, WorldError
     from rssnav.measurements.survey import SurveyError
 
-    unusable = (PlanError, SceneError, MapFileError, WorldError, ResultFileError, SurveyError)
-    anticipated = (*unusable, MemoryLimitError, OSError)
+    unusable = (PlanError, SceneError, AntennaError, MapFileError, WorldError, ResultFileError)
+    anticipated = (*unusable, SurveyError, MemoryLimitError, OSError)
     return isinstance(error, anticipated) and not isinstance(error, BrokenPipeError)
 
 

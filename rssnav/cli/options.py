@@ -1,11 +1,13 @@
 """Arguments and options that several commands share."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
 MAX_RUNS = 100_000
+
+_OF_PRESET = "the preset's"
 
 
 def _known_edition(edition: str | None) -> str | None:
@@ -14,6 +16,15 @@ def _known_edition(edition: str | None) -> str | None:
     if edition is None or edition.upper() in MATERIAL_EDITIONS:
         return edition and edition.upper()
     raise typer.BadParameter(f"{edition!r} is not one of {', '.join(MATERIAL_EDITIONS)}.")
+
+
+def _check_antenna(name: str | None) -> str | None:
+    """Check that an antenna has a known name or a CSV file; otherwise it is wrong usage."""
+    from floorplans.transmitters import ANTENNAS
+
+    if name is None or name in ANTENNAS or name.lower().endswith(".csv"):
+        return name
+    raise typer.BadParameter(f"{name!r} is not {', '.join(ANTENNAS)} or the path of a .csv file.")
 
 
 def _complete_plan(incomplete: str) -> list[str]:
@@ -41,30 +52,64 @@ Height = Annotated[
         "--height", metavar="M", min=0.0, max=1000.0, help="Height of the receivers in metres."
     ),
 ]
-Reflections = Annotated[
-    int,
+Preset = Annotated[
+    Literal["paper", "building"] | None,
     typer.Option(
-        "--reflections", metavar="N", min=0, max=20, help="Maximum number of reflections on a path."
+        "--preset",
+        help="paper: 6 reflections, opaque walls, vertical dipoles; building: 3 reflections, "
+        "transmission, antennas of unknown orientation. Other options override it.",
+        show_default="paper for built-in plans, otherwise building",
+    ),
+]
+Reflections = Annotated[
+    int | None,
+    typer.Option(
+        "--reflections",
+        metavar="N",
+        min=0,
+        max=20,
+        help="Maximum number of reflections on a path.",
+        show_default=_OF_PRESET,
     ),
 ]
 Diffractions = Annotated[
-    int,
+    int | None,
     typer.Option(
         "--diffractions",
         metavar="N",
         min=0,
         max=1,
         help="Maximum number of diffractions on a path.",
+        show_default=_OF_PRESET,
     ),
 ]
 Transmissions = Annotated[
-    int,
+    int | None,
     typer.Option(
         "--transmissions",
         metavar="N",
         min=0,
         max=20,
         help="Maximum transmissions through walls on a path.",
+        show_default=_OF_PRESET,
+    ),
+]
+From = Annotated[
+    str | None,
+    typer.Option(
+        "--from",
+        metavar="WHICH",
+        help="The transmitter: an id of the plan's, source, or X,Y,Z in metres.",
+        show_default="the source, otherwise the plan's transmitter",
+    ),
+]
+FromSeveral = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--from",
+        metavar="WHICH",
+        help="A transmitter: an id of the plan's, source, X,Y,Z in metres, or all; repeatable.",
+        show_default="the source, otherwise all transmitters",
     ),
 ]
 MinPower = Annotated[
@@ -106,14 +151,46 @@ def _max_memory(default: str) -> Any:
 MaxMemory = Annotated[float | None, _max_memory("half of what is free")]
 MaxTabMemory = Annotated[float | None, _max_memory("1 for each tab")]
 Frequency = Annotated[
-    float,
+    float | None,
     typer.Option(
-        "--frequency", metavar="GHZ", min=0.001, max=1000.0, help="Carrier frequency in GHz."
+        "--frequency",
+        metavar="GHZ",
+        min=0.001,
+        max=1000.0,
+        help="Carrier frequency in GHz.",
+        show_default="the transmitter's in the plan, otherwise 2.4",
     ),
 ]
 Power = Annotated[
-    float,
-    typer.Option("--power", metavar="DBM", min=-200.0, max=200.0, help="Transmit power in dBm."),
+    float | None,
+    typer.Option(
+        "--power",
+        metavar="DBM",
+        min=-200.0,
+        max=200.0,
+        help="Transmit power in dBm.",
+        show_default="the transmitter's in the plan, otherwise 25",
+    ),
+]
+AntennaName = Annotated[
+    str | None,
+    typer.Option(
+        "--antenna",
+        metavar="NAME",
+        callback=_check_antenna,
+        help="Of the transmitter: isotropic, dipole (vertical), or a pattern.csv.",
+        show_default="the transmitter's in the plan, otherwise the preset's",
+    ),
+]
+ReceiveAntennaName = Annotated[
+    str | None,
+    typer.Option(
+        "--receive-antenna",
+        metavar="NAME",
+        callback=_check_antenna,
+        help="Of the receivers: isotropic, dipole (vertical), or a pattern.csv.",
+        show_default=_OF_PRESET,
+    ),
 ]
 Edition = Annotated[
     str | None,

@@ -1,4 +1,4 @@
-"""``rssnav paths``: the strongest paths from a plan's source to one receiver."""
+"""``rssnav paths``: the strongest paths from a transmitter to one receiver."""
 
 import csv
 import sys
@@ -11,15 +11,21 @@ import typer
 
 import floorplans
 from floorplans import FloorPlan
-from raytrace import Paths, PathStatistics, SceneError, TraceConfig, Transmitter, trace_paths
+from raytrace import Paths, PathStatistics, SceneError, Transmitter, trace_paths
 from rssnav.cli.console import COMPILING, note, print_json, print_pairs, print_table
 from rssnav.cli.options import (
     PICTURE_SUFFIXES,
+    AntennaName,
     Diffractions,
     Edition,
+    Frequency,
+    From,
     Json,
     MaxMemory,
     Plan,
+    Power,
+    Preset,
+    ReceiveAntennaName,
     Reflections,
     Style,
     Transmissions,
@@ -27,11 +33,9 @@ from rssnav.cli.options import (
     examples,
     in_bytes,
 )
+from rssnav.cli.radio import Position, Radio, check_inside, radio_of, read_position
 from rssnav.kernel_cache import tracer_cache
-from rssnav.maps import FREQUENCY_HZ, HEIGHT_M, POWER_DBM
 from rssnav.scenes import scene_of
-
-Position = tuple[float, float, float]
 
 DRAWING_SUFFIXES = (*PICTURE_SUFFIXES, ".glb", ".html")
 CSV_COLUMNS = ("path", "power_dbm", "length_m", "delay_s", "interactions", "vertices_m")
@@ -45,22 +49,9 @@ def add_to(parent: typer.Typer) -> None:
             "rssnav paths flat --to 10.5,1.5 --top 5",
             "rssnav paths flat --to 10.5,1.5 --only '*D*' --picture diffracted.html",
             "rssnav paths scenario1 --to 93.5,2.5,1.5 --reflections 3 --json",
+            "rssnav paths flat --from 6,4.7,2.4 --to 10.5,1.5 --preset building --top 5",
         ),
     )(show_paths)
-
-
-def _read_position(text: str) -> Position:
-    """Read "x,y" or "x,y,z" [m]."""
-    try:
-        numbers = [float(part) for part in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) == 2:
-        numbers.append(HEIGHT_M)
-    if len(numbers) != 3 or not np.isfinite(numbers).all():
-        raise typer.BadParameter(f"{text!r} is not X,Y or X,Y,Z in metres, such as 10.5,1.5.")
-    x, y, z = numbers
-    return x, y, z
 
 
 def show_paths(
@@ -70,7 +61,7 @@ def show_paths(
         typer.Option(
             "--to",
             metavar="X,Y[,Z]",
-            parser=_read_position,
+            parser=read_position,
             help="The receiver in metres; 2 m above the floor without Z.",
         ),
     ],
@@ -95,16 +86,22 @@ def show_paths(
             show_default=False,
         ),
     ] = None,
-    reflections: Reflections = TraceConfig.max_reflections,
-    diffractions: Diffractions = TraceConfig.max_diffractions,
-    transmissions: Transmissions = TraceConfig.max_transmissions,
+    source: From = None,
+    power: Power = None,
+    frequency: Frequency = None,
+    antenna: AntennaName = None,
+    receive_antenna: ReceiveAntennaName = None,
+    preset: Preset = None,
+    reflections: Reflections = None,
+    diffractions: Diffractions = None,
+    transmissions: Transmissions = None,
     max_memory: MaxMemory = None,
     edition: Edition = None,
     style: Style = None,
     as_json: Json = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="Print CSV, for spreadsheets.")] = False,
 ) -> None:
-    """Trace all paths from a plan's source to a receiver and print the strongest.
+    """Trace all paths from a transmitter to a receiver and print the strongest.
 
     Interactions are listed in order: R reflection, D diffraction, T transmission; LOS for
     line of sight.
@@ -113,37 +110,59 @@ def show_paths(
         raise typer.BadParameter("use it or --json, not both.", param_hint="--csv")
     check_suffix(picture, DRAWING_SUFFIXES, "--picture")
     loaded = floorplans.load(plan)
-    _check_inside(loaded, plan, to)
-    config = TraceConfig(reflections, diffractions, transmissions)
-    paths = _trace(loaded, plan, to, config, edition, in_bytes(max_memory))
-    chosen = _chosen(paths, only, top)
+    check_inside(loaded, plan, to, "--to")
+    options = {
+        "preset": preset, "reflections": reflections, "diffractions": diffractions,
+        "transmissions": transmissions, "power": power, "frequency": frequency,
+        "antenna": antenna, "receive_antenna": receive_antenna,
+    }  # fmt: skip
+    radio = radio_of(plan, loaded, None if source is None else [source], options)
+    transmitter = _only(radio)
+    paths = _trace(loaded, plan, to, radio, transmitter, edition, in_bytes(max_memory))
+    chosen, power_dbm = _chosen(paths, only, top), transmitter.power_dbm
     if picture is not None:
-        _draw(loaded, chosen, only, picture, style)
-    totals = _totals(paths)
-    rows = [_row(chosen, k) for k in range(len(chosen))]
+        _draw(loaded, chosen, only, power_dbm, picture, style)
+    totals = _totals(paths, power_dbm)
+    rows = [_row(chosen, k, power_dbm) for k in range(len(chosen))]
     if as_json:
-        print_json({"plan": plan, "receiver_m": to, **totals, "strongest": rows})
+        ends = {"transmitter_m": transmitter.position, "receiver_m": to}
+        print_json({"plan": plan, **ends, **totals, "strongest": rows})
     elif as_csv:
         _print_csv(rows)
     else:
         _print(rows, totals)
 
 
+def _only(radio: Radio) -> Transmitter:
+    """The one transmitter; several are wrong usage."""
+    if len(radio.transmitters) > 1:
+        raise typer.BadParameter(
+            f"choose one of the transmitters {', '.join(radio.transmitters)}.", param_hint="--from"
+        )
+    return next(iter(radio.transmitters.values()))
+
+
 def _trace(
     plan: FloorPlan,
     name: str,
     to: Position,
-    config: TraceConfig,
+    radio: Radio,
+    transmitter: Transmitter,
     edition: str | None,
     max_memory_bytes: int | None,
 ) -> Paths:
     """All paths to a receiver, strongest first."""
     if not tracer_cache().n_compiled:
         note(COMPILING)
-    source = Transmitter(plan.require_source(), POWER_DBM, FREQUENCY_HZ)
     try:
-        scene, receivers = scene_of(plan, edition), np.array([to])
-        return trace_paths(scene, source, receivers, config, max_memory_bytes=max_memory_bytes)
+        return trace_paths(
+            scene_of(plan, edition),
+            transmitter,
+            np.array([to]),
+            radio.config,
+            receive_antenna=radio.receive_antenna,
+            max_memory_bytes=max_memory_bytes,
+        )
     except SceneError as error:
         raise SceneError(f"{name}: {error}") from error
 
@@ -154,7 +173,9 @@ def _chosen(paths: Paths, only: str, top: int) -> Paths:
     return paths.rows(np.array(rows[:top], dtype=np.int64))
 
 
-def _draw(plan: FloorPlan, paths: Paths, only: str, picture: Path, style: str | None) -> None:
+def _draw(
+    plan: FloorPlan, paths: Paths, only: str, power_dbm: float, picture: Path, style: str | None
+) -> None:
     """Draw paths into a file, or print a note if there are none."""
     from rssnav.pictures.paths import save_paths_picture
     from rssnav.pictures.style import chosen_style
@@ -167,23 +188,12 @@ def _draw(plan: FloorPlan, paths: Paths, only: str, picture: Path, style: str | 
     what = f"the {len(paths)} strongest paths" if len(paths) > 1 else "the strongest path"
     title = f"{plan.name}: {what}{kind} to ({x:g}, {y:g}, {z:g}) m"
     with chosen_style(style):
-        save_paths_picture(plan, paths, POWER_DBM, title, picture)
+        save_paths_picture(plan, paths, power_dbm, title, picture)
 
 
-def _check_inside(plan: FloorPlan, name: str, to: Position) -> None:
-    x, y, z = to
-    x_min, y_min, x_max, y_max = plan.bounds
-    if not (plan.contains(np.array([(x, y)]), z).all() and 0.0 < z < plan.height_m):
-        raise typer.BadParameter(
-            f"({x:g}, {y:g}, {z:g}) is not inside {name}, which reaches from ({x_min:g}, "
-            f"{y_min:g}) to ({x_max:g}, {y_max:g}) and is {plan.height_m:g} m high.",
-            param_hint="--to",
-        )
-
-
-def _totals(paths: Paths) -> dict[str, Any]:
+def _totals(paths: Paths, power_dbm: float) -> dict[str, Any]:
     """Sums over all paths: powers, coherent field, delays, directions."""
-    s = PathStatistics.of(paths, POWER_DBM, 1)
+    s = PathStatistics.of(paths, power_dbm, 1)
     return {
         "paths": int(s.path_count[0]),
         "rss_dbm": float(s.rss_dbm[0]),
@@ -195,9 +205,9 @@ def _totals(paths: Paths) -> dict[str, Any]:
     }
 
 
-def _row(paths: Paths, k: int) -> dict[str, Any]:
+def _row(paths: Paths, k: int, power_dbm: float) -> dict[str, Any]:
     return {
-        "power_dbm": float(POWER_DBM + paths.gain_db[k]),
+        "power_dbm": float(power_dbm + paths.gain_db[k]),
         "length_m": float(paths.length_m[k]),
         "delay_s": float(paths.delay_s[k]),
         "interactions": paths.sequence(k),

@@ -1,6 +1,7 @@
 """``rssnav map`` and ``rssnav maps``: radio maps of floor plans."""
 
-import math
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,15 +10,17 @@ import typer
 
 import floorplans
 from floorplans import FloorPlan
-from raytrace import RadioMap, TraceConfig
+from raytrace import RadioMap, Transmitter, TransmitterMaps
 from rssnav.cli.console import note, print_json, print_pairs, say, stage_progress
 from rssnav.cli.options import (
     PICTURE_SUFFIXES,
+    AntennaName,
     CellSize,
     Diffractions,
     Edition,
     Force,
     Frequency,
+    FromSeveral,
     Height,
     Json,
     MaxMemory,
@@ -26,6 +29,8 @@ from rssnav.cli.options import (
     Picture,
     Plan,
     Power,
+    Preset,
+    ReceiveAntennaName,
     Reflections,
     Style,
     Threads,
@@ -34,8 +39,10 @@ from rssnav.cli.options import (
     examples,
     in_bytes,
 )
+from rssnav.cli.radio import Radio, radio_of
 from rssnav.kernel_cache import tracer_cache
-from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM, cells_inside, make_map
+from rssnav.maps import CELL_SIZE_M, HEIGHT_M, cells_inside, make_map
+from rssnav.transmitter_maps import make_transmitter_maps
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -45,6 +52,7 @@ def add_to(parent: typer.Typer) -> None:
         epilog=examples(
             "rssnav map flat -o flat.h5 --picture flat-map.png",
             "rssnav map scenario1 -o s1-coarse.h5 --reflections 2",
+            "rssnav map flat -o flat-5ghz.h5 --preset building --from 6,4.7,2.4 --frequency 5.2",
         ),
     )(map_plan)
     parent.command(
@@ -61,11 +69,15 @@ def map_plan(
     style: Style = None,
     cell_size: CellSize = CELL_SIZE_M,
     height: Height = HEIGHT_M,
-    frequency: Frequency = FREQUENCY_HZ / 1e9,
-    power: Power = POWER_DBM,
-    reflections: Reflections = TraceConfig.max_reflections,
-    diffractions: Diffractions = TraceConfig.max_diffractions,
-    transmissions: Transmissions = TraceConfig.max_transmissions,
+    source: FromSeveral = None,
+    frequency: Frequency = None,
+    power: Power = None,
+    antenna: AntennaName = None,
+    receive_antenna: ReceiveAntennaName = None,
+    preset: Preset = None,
+    reflections: Reflections = None,
+    diffractions: Diffractions = None,
+    transmissions: Transmissions = None,
     min_power: MinPower = None,
     max_paths: MaxPaths = None,
     max_memory: MaxMemory = None,
@@ -76,7 +88,8 @@ def map_plan(
 ) -> None:
     """Trace the radio map of a plan: RSS in every cell, from all paths of bounded order.
 
-    A map that is up to date is not recomputed. Ctrl-C leaves the old file or none.
+    Several transmitters have a map each, in one file. A map that is up to date is not recomputed.
+    Ctrl-C leaves the old file or none.
     """
     check_suffix(picture, PICTURE_SUFFIXES, "--picture")
     loaded = floorplans.load(plan)
@@ -86,35 +99,64 @@ def map_plan(
             f"below {loaded.height_m:g}.",
             param_hint="--height",
         )
+    options = {
+        "preset": preset, "reflections": reflections, "diffractions": diffractions,
+        "transmissions": transmissions, "min_power": min_power, "max_paths": max_paths,
+        "power": power, "frequency": frequency, "antenna": antenna,
+        "receive_antenna": receive_antenna,
+    }  # fmt: skip
+    radio = radio_of(plan, loaded, source, options)
     with stage_progress(compiles=not tracer_cache().n_compiled) as show:
-        radio_map = make_map(
+        maps = _traced(
             loaded,
             output,
+            radio,
             cell_size_m=cell_size,
             height_m=height,
-            config=TraceConfig(
-                reflections,
-                diffractions,
-                transmissions,
-                -math.inf if min_power is None else min_power,
-                max_paths,
-            ),
-            frequency_hz=frequency * 1e9,
-            power_dbm=power,
             edition=edition,
             threads=threads,
             max_memory_bytes=in_bytes(max_memory),
-            progress=lambda done, total: show(loaded.name, done, total),
+            progress=partial(show, loaded.name),
             notice=note,
             force=force,
         )
+    strongest = maps.best_server_map if len(maps) > 1 else maps.first
+    _note_dark_cells(loaded, strongest)
     if picture is not None:
-        _draw(loaded, radio_map, picture, style)
-    summary = _summary(loaded, radio_map, output, picture)
+        _draw(loaded, strongest, picture, style, list(radio.transmitters.values()))
+    summary = _summary(loaded, maps, strongest) | {
+        "file": str(output),
+        "picture": None if picture is None else str(picture),
+    }
     if as_json:
         print_json({"plan": plan, **summary})
     else:
         _print_summary(summary)
+
+
+def _traced(plan: FloorPlan, output: Path, radio: Radio, **options: Any) -> TransmitterMaps:
+    """The maps of all transmitters; a single one is kept as the map of one transmitter."""
+    shared: dict[str, Any] = {
+        "config": radio.config,
+        "receive_antenna": radio.receive_antenna,
+        **options,
+    }
+    if len(radio.transmitters) > 1:
+        return make_transmitter_maps(plan, radio.transmitters, output, **shared)
+    ((name, transmitter),) = radio.transmitters.items()
+    return TransmitterMaps({name: make_map(plan, output, transmitter=transmitter, **shared)})
+
+
+def _note_dark_cells(plan: FloorPlan, radio_map: RadioMap) -> None:
+    """Say what to do about cells that are shut off by walls alone."""
+    dark = cells_inside(plan, radio_map.grid) & np.isneginf(radio_map.rss_dbm)
+    if not dark.any():
+        return
+    transmissions = radio_map.config.max_transmissions
+    remedy = f"more than --transmissions {transmissions}"
+    if transmissions == 0:
+        remedy = f"--preset building, or {remedy}"
+    note(f"no path reaches {dark.sum()} cells inside the building: try {remedy}")
 
 
 def map_scenarios(
@@ -159,22 +201,25 @@ def _is_older(picture: Path, map_file: Path) -> bool:
     return not picture.exists() or picture.stat().st_mtime < map_file.stat().st_mtime
 
 
-def _draw(plan: FloorPlan, radio_map: RadioMap, picture: Path, style: str | None) -> None:
+def _draw(
+    plan: FloorPlan,
+    radio_map: RadioMap,
+    picture: Path,
+    style: str | None,
+    transmitters: Sequence[Transmitter] = (),
+) -> None:
     from rssnav.pictures.radio_map import save_map_picture
     from rssnav.pictures.style import chosen_style
 
     with chosen_style(style):
-        save_map_picture(plan, radio_map, picture)
+        save_map_picture(plan, radio_map, picture, transmitters=transmitters)
 
 
-def _summary(
-    plan: FloorPlan, radio_map: RadioMap, output: Path, picture: Path | None
-) -> dict[str, Any]:
+def _summary(plan: FloorPlan, maps: TransmitterMaps, radio_map: RadioMap) -> dict[str, Any]:
+    """Properties of maps, and of the one that is drawn."""
     covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
     inside = cells_inside(plan, radio_map.grid)
     return {
-        "file": str(output),
-        "picture": None if picture is None else str(picture),
         "shape": radio_map.grid.shape,
         "cell_size_m": radio_map.grid.cell_size_m,
         "height_m": radio_map.grid.height_m,
@@ -183,14 +228,15 @@ def _summary(
         "cells_without_path": int(np.count_nonzero(inside & np.isneginf(radio_map.rss_dbm))),
         "rss_dbm_min": float(covered.min()) if covered.size else None,
         "rss_dbm_max": float(covered.max()) if covered.size else None,
-        "paths": int(radio_map.path_count.sum()),
-        "tracing_s": radio_map.provenance["wall_time_s"],
+        "transmitters": {name: one.transmitter.position for name, one in maps.items()},
+        "paths": int(sum(one.path_count.sum() for one in maps.values())),
+        "tracing_s": sum(one.provenance["wall_time_s"] for one in maps.values()),
         "plan_sha256": radio_map.plan_sha256,
     }
 
 
 def _print_summary(summary: dict[str, Any]) -> None:
-    n_y, n_x = summary["shape"]
+    (n_y, n_x), names = summary["shape"], summary["transmitters"]
     outside = summary["cells_outside"]
     outside = f", {outside} outside the building" if outside else ""
     rss = "no cell has a path"
@@ -198,8 +244,9 @@ def _print_summary(summary: dict[str, Any]) -> None:
         rss = f"{summary['rss_dbm_min']:.2f} to {summary['rss_dbm_max']:.2f} dBm"
     pairs = [
         ("map", summary["file"]),
+        *([("transmitters", ", ".join(names))] if len(names) > 1 else []),
         ("cells", f"{n_x} x {n_y}{outside}, {summary['cells_without_path']} without a path"),
-        ("RSS", rss),
+        ("strongest RSS" if len(names) > 1 else "RSS", rss),
         ("paths", f"{summary['paths']:,}".replace(",", " ")),
         ("tracing", f"{summary['tracing_s']:.1f} s"),
     ]

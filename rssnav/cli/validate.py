@@ -7,7 +7,6 @@ from dataclasses import replace
 import typer
 
 import floorplans
-from raytrace import TraceConfig
 from rssnav.cli.console import print_json, print_pairs, print_table, say, stage_progress
 from rssnav.cli.options import (
     Diffractions,
@@ -15,6 +14,7 @@ from rssnav.cli.options import (
     Json,
     MaxMemory,
     Plan,
+    Preset,
     Reflections,
     Threads,
     Transmissions,
@@ -22,6 +22,7 @@ from rssnav.cli.options import (
     examples,
     in_bytes,
 )
+from rssnav.cli.radio import config_of
 from rssnav.cli.survey_options import (
     Antennas,
     Offset,
@@ -34,13 +35,14 @@ from rssnav.cli.survey_options import (
     load_survey,
 )
 from rssnav.kernel_cache import tracer_cache
-from rssnav.maps import FREQUENCY_HZ
 from rssnav.measurements.hold_out import SQUARE_M
 from rssnav.measurements.pages import cautions_of, save_validation_page, sentence_of
 from rssnav.measurements.survey import Survey
 from rssnav.measurements.traced import TraceSettings, traced_dbm
 from rssnav.measurements.validation import Validation, validate
+from rssnav.presets import PRESETS
 from rssnav.scenes import scene_of
+from rssnav.transmitters import FREQUENCY_HZ
 
 EXAMPLE = (
     "measured-flat/flat.toml measured-flat/survey.csv --transmitters measured-flat/transmitters.csv"
@@ -65,9 +67,10 @@ def validate_plan(
     square: Square = SQUARE_M,
     frequency: SurveyFrequency = None,
     antenna: Antennas = "isotropic",
-    reflections: Reflections = 3,
-    diffractions: Diffractions = 1,
-    transmissions: Transmissions = 3,
+    preset: Preset = "building",
+    reflections: Reflections = None,
+    diffractions: Diffractions = None,
+    transmissions: Transmissions = None,
     report: Report = None,
     max_memory: MaxMemory = None,
     edition: Edition = None,
@@ -83,7 +86,14 @@ def validate_plan(
     loaded = floorplans.load(plan)
     read = load_survey(loaded, survey, transmitters)
     settings = TraceSettings(
-        TraceConfig(reflections, diffractions, transmissions),
+        config_of(
+            PRESETS[preset or "building"],
+            {
+                "reflections": reflections,
+                "diffractions": diffractions,
+                "transmissions": transmissions,
+            },
+        ),
         FREQUENCY_HZ if read.frequency_hz is None else read.frequency_hz,
         antenna_of(antenna),
         antenna_of(antenna),

@@ -26,8 +26,9 @@ from raytrace import (
 from rssnav.explorer.background import NewestOnly, Ticket
 from rssnav.explorer.fair_turns import TabTurns
 from rssnav.explorer.limits import Limits
-from rssnav.maps import CELL_SIZE_M, FREQUENCY_HZ, HEIGHT_M, POWER_DBM
+from rssnav.maps import CELL_SIZE_M, HEIGHT_M
 from rssnav.scenes import PlanScene
+from rssnav.transmitters import FREQUENCY_HZ, POWER_DBM
 
 Position = tuple[float, float, float]
 

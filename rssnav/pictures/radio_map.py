@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from shapely import get_coordinates
 
 from floorplans import FloorPlan
-from raytrace import Grid, RadioMap
+from raytrace import Grid, RadioMap, Transmitter
 from rssnav.maps import cells_inside
 from rssnav.pictures.style import (
     COLUMN_IN,
@@ -55,6 +55,7 @@ def draw_radio_map(
     ax: Axes,
     *,
     rss_range_dbm: tuple[float, float] | None = None,
+    transmitters: Sequence[Transmitter] = (),
 ) -> AxesImage:
     """Draw a radio map, its plan's walls, its transmitter and the start.
 
@@ -68,6 +69,8 @@ def draw_radio_map(
         Axes of the drawing, which become x and y [m].
     rss_range_dbm : (float, float), optional
         RSS [dBm] of the darkest and the lightest colour; the map's range by default.
+    transmitters : sequence of Transmitter, optional
+        What is marked; the map's own transmitter by default.
 
     Returns
     -------
@@ -83,8 +86,8 @@ def draw_radio_map(
     if dark.any():
         _hatch_cells(radio_map.grid, dark, ax)
     draw_walls(plan, radio_map.grid.height_m, ax)
-    position = radio_map.transmitter.position
-    draw_transmitter(ax, position, "source" if position == plan.source else "transmitter")
+    for position in [t.position for t in transmitters or [radio_map.transmitter]]:
+        draw_transmitter(ax, position, "source" if position == plan.source else "transmitter")
     if plan.start is not None:
         draw_start(ax, plan)
     set_limits(plan, ax)
@@ -92,12 +95,18 @@ def draw_radio_map(
 
 
 @styled
-def map_figure(plan: FloorPlan, radio_map: RadioMap, *, width_in: float | None = None) -> Figure:
+def map_figure(
+    plan: FloorPlan,
+    radio_map: RadioMap,
+    *,
+    width_in: float | None = None,
+    transmitters: Sequence[Transmitter] = (),
+) -> Figure:
     """Draw a radio map with its scale, legend and parameters.
 
     Parameters
     ----------
-    plan, radio_map
+    plan, radio_map, transmitters
         As for `draw_radio_map`.
     width_in : float, optional
         Width of the figure [inch]: by default one column of a two-column page, or both for a plan
@@ -106,32 +115,38 @@ def map_figure(plan: FloorPlan, radio_map: RadioMap, *, width_in: float | None =
     width_in = width_in or plan_width_in(plan)
     keys = _keys(plan, radio_map)
     columns = max(1, int(width_in / _KEY_IN))
-    title = textwrap.wrap(_title(plan, radio_map), int(width_in / _CHARACTER_IN))
+    title = textwrap.wrap(_title(plan, radio_map, len(transmitters)), int(width_in / _CHARACTER_IN))
     lines = len(title) + -(-(len(keys) + 2) // columns)
     layout = ConstrainedLayoutEngine(w_pad=_PAD_IN, h_pad=_PAD_IN)
     figure = Figure((width_in, plan_height_in(plan, width_in, lines)), layout=layout)
     ax = figure.add_subplot()
-    image = draw_radio_map(plan, radio_map, ax)
+    image = draw_radio_map(plan, radio_map, ax, transmitters=transmitters)
     figure.colorbar(image, ax=ax, label="RSS [dBm]", pad=0.02, aspect=25)
     figure.suptitle("\n".join(title), x=0.01, ha="left", fontsize="medium", parse_math=False)
-    marks, _ = ax.get_legend_handles_labels()
+    marks = list(dict(zip(*ax.get_legend_handles_labels()[::-1], strict=True)).values())
     figure.legend(handles=[*marks, *keys], loc="outside lower center", ncols=columns)
     return figure
 
 
 def save_map_picture(
-    plan: FloorPlan, radio_map: RadioMap, path: str | Path, *, width_in: float | None = None
+    plan: FloorPlan,
+    radio_map: RadioMap,
+    path: str | Path,
+    *,
+    width_in: float | None = None,
+    transmitters: Sequence[Transmitter] = (),
 ) -> None:
     """Draw a radio map into a file.
 
     Parameters
     ----------
-    plan, radio_map, width_in
+    plan, radio_map, width_in, transmitters
         As for `map_figure`.
     path : str or Path
         Its suffix names the format: .png, .svg or .pdf. Written atomically.
     """
-    save_picture(map_figure(plan, radio_map, width_in=width_in), path)
+    figure = map_figure(plan, radio_map, width_in=width_in, transmitters=transmitters)
+    save_picture(figure, path)
 
 
 def _range_of(rss_dbm: NDArray[np.float64]) -> tuple[float, float]:
@@ -202,7 +217,12 @@ def plan_height_in(plan: FloorPlan, width_in: float, lines: int) -> float:
     return drawn_in + _BELOW_IN + lines * _LINE_IN
 
 
-def _title(plan: FloorPlan, radio_map: RadioMap) -> str:
+def _title(plan: FloorPlan, radio_map: RadioMap, n_transmitters: int) -> str:
+    if n_transmitters > 1:
+        return (
+            f"{plan.name}: strongest of {n_transmitters} transmitters, "
+            f"received {radio_map.grid.height_m:g} m above the floor"
+        )
     transmitter = radio_map.transmitter
     return (
         f"{plan.name}: {transmitter.power_dbm:g} dBm at {transmitter.frequency_hz * 1e-9:g} GHz, "

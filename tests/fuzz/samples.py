@@ -11,6 +11,7 @@ import tempfile
 import tomllib
 import zipfile
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache, wraps
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,16 @@ import small_worlds
 
 import floorplans
 from floorplans.exporters import export
-from raytrace import Grid, Scene, TraceConfig, Transmitter, compute_radio_map
+from raytrace import (
+    Grid,
+    HalfWaveDipole,
+    PatternTable,
+    Scene,
+    TraceConfig,
+    Transmitter,
+    TransmitterMaps,
+    compute_radio_map,
+)
 from rssnav import LocationAgent, RssAgent, train
 
 FOLDER = "FUZZ_SAMPLES"
@@ -60,6 +70,14 @@ layers = [
 [materials.thing]
 relative_permittivity = 4.2
 conductivity = 0.02
+
+[[transmitters]]
+id = "hall"
+position = [2.5, 1.5, 2]
+power_dbm = 20
+frequency_hz = 5.2e9
+antenna = "dipole"
+direction = [0, 0, 1]
 """
 
 
@@ -89,6 +107,15 @@ def radio_map() -> Any:
 def map_file() -> bytes:
     """A map as it is written."""
     return _written("map.h5", radio_map().save)
+
+
+@_kept
+def transmitter_maps_file() -> bytes:
+    """Maps of two transmitters with different antennas, as they are written."""
+    first = radio_map()
+    other = PatternTable.of(HalfWaveDipole(axis=(1.0, 0.0, 0.5)), 30.0)
+    second = replace(first, transmitter=replace(first.transmitter, antenna=other))
+    return _written("maps.h5", TransmitterMaps({"one": first, "two": second}).save)
 
 
 @_kept

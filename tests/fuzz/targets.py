@@ -28,6 +28,7 @@ from raytrace import (
     RadioMap,
     Scene,
     SceneError,
+    TransmitterMaps,
 )
 from rssnav import ResultFileError, TrainingResult
 from rssnav.measurements.survey import SurveyError, SurveyTransmitter
@@ -114,6 +115,14 @@ def _importer(name: str) -> Callable[[Path], object]:
     return run
 
 
+def _run_transmitter_maps(path: Path) -> None:
+    maps = TransmitterMaps.load(path)
+    shape = maps.first.grid.shape
+    for found in (maps.best_server, maps.total_dbm, maps.sinr_db(), maps.best_server_map.rss_dbm):
+        assert found.shape == shape
+        assert not np.isnan(found).any()
+
+
 def _run_ros_map(path: Path) -> None:
     """Unpack picture and description, and import them."""
     folder = path.parent / "map"
@@ -179,6 +188,10 @@ TARGETS = {
     "plan": Target(_plans, _run_plan, (PlanError, SceneError), ".toml", by_lines=True),
     "repair": Target(_plans, _run_repair, (PlanError,), ".toml", by_lines=True),
     "map": Target(lambda: damaged_hdf5(samples.map_file()), _run_map, (MapFileError,), ".h5"),
+    "maps": Target(
+        lambda: damaged_hdf5(samples.transmitter_maps_file()), _run_transmitter_maps,
+        (MapFileError,), ".h5",
+    ),
     "result": Target(_results, _run_result, (ResultFileError,), ".h5"),
     "dxf": Target(_drawings, _importer("flat.dxf"), (PlanError,), ".dxf", by_lines=True),
     "geojson": Target(_geojson, _importer("room.geojson"), (PlanError,), ".geojson"),

@@ -34,7 +34,7 @@ thickness_m = 0.1
 openings = [{ kind = "door", offset_m = 1, width_m = 1, head_m = 2.4 }]
 """
 
-QUICK = ("--reflections", "1", "--diffractions", "0")
+QUICK = ("--preset", "paper", "--reflections", "1", "--diffractions", "0")
 """Few enough paths for a test; cells behind the partition have none."""
 
 ESCAPE = re.compile(r"\x1b\[")

@@ -13,9 +13,9 @@ from matplotlib.colors import to_hex
 
 import floorplans
 from raytrace import Paths, TraceConfig, Transmitter, trace_paths
-from rssnav.maps import POWER_DBM
 from rssnav.pictures.paths import path_lines, paths_figure, power_scale, save_paths_picture
 from rssnav.scenes import scene_of
+from rssnav.transmitters import POWER_DBM
 
 PLAN = floorplans.loads(ROOM)
 RECEIVER = (2.5, 3.0, 1.8)

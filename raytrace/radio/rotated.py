@@ -1,0 +1,82 @@
+"""An antenna that is mounted in another direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from raytrace.arrays import Floats
+from raytrace.radio.antennas import Amplitudes, Antenna
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Rotated:
+    """An antenna with its own axes, whose field is that of the antenna in them.
+
+    Attributes
+    ----------
+    antenna
+        The antenna.
+    x_axis, z_axis
+        Its axes in the building, orthogonal unit vectors.
+    """
+
+    antenna: Antenna
+    x_axis: Vector
+    z_axis: Vector
+
+    @classmethod
+    def towards(cls, antenna: Antenna, direction: Vector) -> Rotated:
+        """Point the +x axis of an antenna in a direction of any length, its y axis level.
+
+        Raises
+        ------
+        ValueError
+            For a direction that is none.
+        """
+        x, y, z = np.asarray(direction, dtype=np.float64)
+        length, level = float(np.hypot(np.hypot(x, y), z)), float(np.hypot(x, y))
+        if not (np.isfinite(length) and length > 0.0):
+            raise ValueError(f"direction = {direction}: expected finite numbers, not all 0")
+        cosine, sine = (x / level, y / level) if level > 0.0 else (1.0, 0.0)
+        up, flat = z / length, level / length
+        return cls(
+            antenna,
+            (float(cosine * flat), float(sine * flat), float(up)),
+            (float(-cosine * up), float(-sine * up), float(flat)),
+        )
+
+    def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
+        """Field amplitudes towards directions; see `raytrace.radio.antennas.Antenna.amplitudes`."""
+        x_axis, z_axis = np.array(self.x_axis), np.array(self.z_axis)
+        axes = np.array([x_axis, np.cross(z_axis, x_axis), z_axis])
+        tau, psi, towards = _frame(np.asarray(sine), np.asarray(azimuth))
+        own = towards @ axes.T
+        own_sine = np.clip(own[..., 2], -1.0, 1.0)
+        own_azimuth = np.arctan2(own[..., 1], own[..., 0])
+        v, h = self.antenna.amplitudes(own_sine, own_azimuth)
+        own_tau, own_psi, _ = _frame(own_sine, own_azimuth)
+        own_tau, own_psi = own_tau @ axes, own_psi @ axes
+
+        return Amplitudes(
+            v * (own_tau * tau).sum(axis=-1) + h * (own_psi * tau).sum(axis=-1),
+            v * (own_tau * psi).sum(axis=-1) + h * (own_psi * psi).sum(axis=-1),
+        )
+
+    def describe(self) -> str:
+        """Name and direction in one line."""
+        x, y, z = self.x_axis
+        return f"{self.antenna.describe()}, towards ({x:.4g}, {y:.4g}, {z:.4g})"
+
+
+def _frame(sine: Floats, azimuth: Floats) -> tuple[Floats, Floats, Floats]:
+    """Unit vectors tau, psi and s of directions (docs/theory.md, eq. 10); (..., 3) each."""
+    cosine = np.sqrt(np.maximum(1.0 - sine**2, 0.0))
+    cos_a, sin_a = np.cos(azimuth), np.sin(azimuth)
+    zero = np.zeros_like(cosine * cos_a)
+    tau = np.stack([-sine * cos_a, -sine * sin_a, cosine + zero], axis=-1)
+    psi = np.stack([-sin_a + zero, cos_a + zero, zero], axis=-1)
+    return tau, psi, np.stack([cosine * cos_a, cosine * sin_a, sine + zero], axis=-1)
