@@ -1,7 +1,9 @@
-"""A worker thread that runs only the newest request."""
+"""Worker threads of a tab: for the newest request only, and for files that are made in turn."""
 
+import asyncio
 import logging
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from threading import Condition, Event, Thread
 
 from rssnav.explorer.fair_turns import TabTurns
@@ -11,6 +13,10 @@ LOGGER = logging.getLogger(__name__)
 
 class SupersededError(Exception):
     """A newer request has replaced this one."""
+
+
+class TooManyError(Exception):
+    """A tab has as many requests waiting as it may."""
 
 
 class Ticket:
@@ -108,3 +114,51 @@ class NewestOnly:
             self._changed.wait_for(lambda: self._closed or self._waiting is not None)
             task, self._waiting = self._waiting, None
             return task
+
+
+class FileMaker:
+    """A thread that makes files one after the other, so that the page answers meanwhile.
+
+    Parameters
+    ----------
+    turns : TabTurns
+        A file waits for a turn of its tab.
+    """
+
+    MOST = 8
+    """Maximum number of files that are waiting or being made."""
+
+    def __init__(self, turns: TabTurns) -> None:
+        self._turns = turns
+        self._ticket = Ticket()
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="files")
+        self._n = 0
+
+    async def make(self, content: Callable[[], bytes]) -> bytes:
+        """Return the content of a file that a function makes on the thread.
+
+        Raises
+        ------
+        TooManyError
+            When `MOST` files are waiting already.
+        SupersededError
+            After `close`.
+        """
+        if self._n >= self.MOST:
+            raise TooManyError(f"{self._n} downloads are waiting: try again when they are done")
+        self._ticket.check()
+        self._n += 1
+        try:
+            loop = asyncio.get_running_loop()
+            return await loop.run_in_executor(self._pool, self._in_turn, content)
+        finally:
+            self._n -= 1
+
+    def _in_turn(self, content: Callable[[], bytes]) -> bytes:
+        with self._turns.turn(self._ticket.check):
+            return content()
+
+    def close(self) -> None:
+        """Make no more files, and end the thread."""
+        self._ticket.cancel()
+        self._pool.shutdown(wait=False)

@@ -78,7 +78,7 @@ def _summary(found: CellPaths) -> str:
         [
             ("cell", f"({x:g}, {y:g}, {z:g}) m"),
             ("RSS", decibels(float(found.statistics.rss_dbm[0]))),
-            ("paths", thousands(len(found.paths))),
+            ("paths", thousands(int(found.statistics.path_count[0]))),
             ("delay spread", f"{1e9 * spread_s:.1f} ns"),
         ]
     )

@@ -54,7 +54,10 @@ class FlightPlayer:
         )
 
     def follow(self, training: LiveTraining | None) -> None:
-        """Update the flights of a training; while it runs, show the latest."""
+        """Update the flights of a training; show the latest unless earlier ones are being played.
+
+        When it ends, the learned flight is shown, and playing ends.
+        """
         flights = [] if training is None else training.flights[:]
         if training is self._training and len(flights) + 1 == self._first.size:
             return
@@ -64,6 +67,8 @@ class FlightPlayer:
             return
         self._episode.options = {_name(flight): index for index, flight in enumerate(flights)}
         self._player.end = int(self._first[-1]) - 1
+        if flights[-1].learned:
+            self._player.direction = 0
         if self._player.direction == 0:
             self._player.value = self._player.end
             self._go(None)

@@ -16,6 +16,9 @@ class Limits:
     ----------
     tabs : int
         Maximum number of open tabs.
+    pages : int
+        Maximum number of pages that are open or being opened, and of connections; pages beyond
+        `tabs` only say that there are too many.
     jobs : int
         Maximum number of tabs that compute at the same time.
     message_bytes : int
@@ -41,6 +44,7 @@ class Limits:
     """
 
     tabs: int = 32
+    pages: int = 200
     jobs: int = max(2, n_threads())
     message_bytes: int = 64_000
     upload_bytes: int = 8_000_000

@@ -123,7 +123,8 @@ class Page:
     def refresh(self) -> None:
         """Show what has changed in the session."""
         session = self._session
-        session.take_upload()
+        if session.take_upload():
+            self._plan_panel.empty_upload()
         if self._changes.of("building", session.plan.walls, session.settings.height_m):
             self._new_figure()
         if self._changes.of("plan", session.plan, session.settings):

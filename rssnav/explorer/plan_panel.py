@@ -53,18 +53,9 @@ class PlanPanel:
         self._plan = pn.widgets.Select(
             label="Plan", options=self._names(), stylesheets=WIDGETS, sizing_mode="stretch_width"
         )
-        self._upload = PlanDropper(
-            label=f"Or your own ({', '.join(ACCEPTED)})",
-            multiple=False,
-            max_file_size=f"{session.limits.upload_bytes // 1000}KB",
-            chunk_size=2 * session.limits.upload_bytes,
-            previews=[],
-            stylesheets=WIDGETS,
-            sizing_mode="stretch_width",
-        )
+        self._upload = pn.Column(self._dropper(), sizing_mode="stretch_width", margin=0)
         self._make_settings()
         self._plan.param.watch(self._choose, "value")
-        self._upload.param.watch(self._take, "value")
         self.view = pn.Column(
             self._plan,
             self._upload,
@@ -89,6 +80,24 @@ class PlanPanel:
             self._inputs[name].value = value
         self._showing = False
 
+    def empty_upload(self) -> None:
+        """Show an empty dropper: only a new one forgets the last file in the browser."""
+        self._upload[:] = [self._dropper()]
+
+    def _dropper(self) -> PlanDropper:
+        limits = self._session.limits
+        dropper = PlanDropper(
+            label=f"Or your own ({', '.join(ACCEPTED)})",
+            multiple=False,
+            max_file_size=f"{limits.upload_bytes // 1000}KB",
+            chunk_size=2 * limits.upload_bytes,
+            previews=[],
+            stylesheets=WIDGETS,
+            sizing_mode="stretch_width",
+        )
+        dropper.param.watch(self._take, "value")
+        return dropper
+
     def _names(self) -> list[str]:
         """Built-in plans and the open plan."""
         return list(dict.fromkeys((*floorplans.builtin_names(), self._session.plan.name)))
@@ -103,7 +112,7 @@ class PlanPanel:
             self._session.open_builtin(event.new)
 
     def _take(self, event: Any) -> None:
-        """Hand an uploaded file to the session, and empty the dropper."""
+        """Hand an uploaded file to the session."""
         for name, content in event.new.items():
             data = content.encode() if isinstance(content, str) else content
             self._session.upload(name, data)

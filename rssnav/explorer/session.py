@@ -9,7 +9,7 @@ import numpy as np
 import floorplans
 from floorplans import FloorPlan, PlanError
 from raytrace import Grid, RadioMap
-from rssnav.explorer.background import NewestOnly, Ticket
+from rssnav.explorer.background import FileMaker, NewestOnly, Ticket
 from rssnav.explorer.fair_turns import FairTurns, TabTurns
 from rssnav.explorer.limits import Limits
 from rssnav.explorer.places import with_source_and_start
@@ -53,6 +53,8 @@ class Session:
     settings : MapSettings
     maps : MapTracer
     paths : PathFinder
+    files : FileMaker
+        Makes what is downloaded.
     training : LiveTraining or None
     cell : (int, int) or None
         Indices (i_y, i_x) of the selected cell.
@@ -77,13 +79,14 @@ class Session:
         self.cell: tuple[int, int] | None = None
         self.problem = ""
         self._reader = NewestOnly("upload", self._turns)
+        self.files = FileMaker(self._turns)
         self._uploaded: FloorPlan | str | None = None
         self.open_plan(plan)
 
     def close(self) -> None:
         """Stop all work of this tab."""
         self.stop_training()
-        for part in (self.maps, self.paths, self._reader):
+        for part in (self.maps, self.paths, self._reader, self.files):
             part.close()
 
     @property

@@ -1,4 +1,4 @@
-"""Messages from the browser: only those that the page sends, and not larger than they can be."""
+"""Requests of browsers: not too many pages, and only messages that the page sends."""
 
 import logging
 from typing import Any
@@ -6,7 +6,9 @@ from typing import Any
 from bokeh.protocol.exceptions import ProtocolError
 from bokeh.protocol.message import Message
 from bokeh.server.urls import per_app_patterns
+from bokeh.server.views.session_handler import SessionHandler
 from panel.io.server import WSHandler
+from tornado.web import RequestHandler
 
 from rssnav.explorer.limits import Limits
 
@@ -26,17 +28,44 @@ LOGGED = 300
 
 
 def guard_websockets(limits: Limits) -> None:
-    """Make servers started from now on refuse other messages than the page's."""
-
-    class Handler(GuardedHandler):
-        pass
-
-    Handler.limits = limits
+    """Make servers started from now on refuse too many pages, and other messages than theirs."""
+    connections: set[GuardedHandler] = set()
+    given = {"limits": limits, "connections": connections}
     for index, (route, handler, *_) in enumerate(per_app_patterns):
         if issubclass(handler, WSHandler):
-            per_app_patterns[index] = (route, Handler)
+            guarded: type[RequestHandler] = type("Handler", (GuardedHandler,), given)
+        elif issubclass(handler, LimitedPages):
+            guarded = type("Handler", (handler,), given)
+        elif issubclass(handler, SessionHandler):
+            guarded = type("Handler", (LimitedPages, handler), given)
+        else:
+            continue
+        per_app_patterns[index] = (route, guarded)
     for name in ("bokeh.server.views.ws", "bokeh.server.protocol_handler"):
         logging.getLogger(name).addFilter(shorten)
+
+
+def refuse(handler: RequestHandler, count: int, what: str) -> None:
+    """Answer a request with 503 and why."""
+    handler.set_status(503)
+    handler.set_header("Retry-After", "5")
+    handler.finish(
+        f"{count} {what} are open, the most that this explorer serves: close some, then reload"
+    )
+
+
+class LimitedPages(RequestHandler):
+    """A page that is refused while too many are open or being opened."""
+
+    limits: Limits
+    application_context: Any
+
+    async def prepare(self) -> None:
+        """Refuse the request where a session for it would be one too many."""
+        await super().prepare()  # pyright: ignore[reportGeneralTypeIssues]
+        n_open = len(self.application_context.sessions)
+        if n_open >= self.limits.pages and not self._finished:
+            refuse(self, n_open, "pages")
 
 
 class GuardedHandler(WSHandler):
@@ -45,13 +74,28 @@ class GuardedHandler(WSHandler):
     Attributes
     ----------
     limits : Limits
+    connections : set
+        Those that are open.
     """
 
     limits: Limits
+    connections: set["GuardedHandler"]
     _n_bytes = 0
+
+    async def prepare(self) -> None:
+        """Refuse a connection that would be one too many."""
+        await super().prepare()
+        if len(self.connections) >= self.limits.pages and not self._finished:
+            refuse(self, len(self.connections), "connections")
+
+    def on_close(self) -> None:
+        """Let another one come."""
+        self.connections.discard(self)
+        super().on_close()
 
     def open(self, *args: str, **kwargs: str) -> None:
         """Open a connection; close it at once for a token that the server has not made."""
+        self.connections.add(self)
         try:
             super().open(*args, **kwargs)
         except (ProtocolError, ValueError, KeyError) as error:

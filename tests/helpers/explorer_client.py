@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,24 @@ from tornado.websocket import WebSocketClosedError, websocket_connect
 
 PATIENCE_S = 60.0
 COMMAND = [sys.executable, "-m", "rssnav", "explore", "flat", "--port", "0", "--no-browser"]
+WITH_FEW_PAGES = [
+    sys.executable,
+    "-c",
+    """
+import sys
+
+import floorplans
+from rssnav.explorer.limits import Limits
+from rssnav.explorer.server import ServerSettings, serve
+
+def ready(address):
+    print(address, file=sys.stderr, flush=True)
+
+settings = ServerSettings(0, show=False, limits=Limits(pages=5))
+serve(floorplans.load("flat"), settings, ready)
+""",
+]
+"""A server of at most five pages."""
 
 
 class Server:
@@ -66,10 +84,10 @@ class Server:
 
 
 @contextmanager
-def running_server(log: Path) -> Iterator[Server]:
+def running_server(log: Path, command: Sequence[str] = COMMAND) -> Iterator[Server]:
     """A server on any free port, in a process of its own."""
     with log.open("wb") as remarks:
-        process = subprocess.Popen(COMMAND, stderr=remarks, stdout=subprocess.DEVNULL)
+        process = subprocess.Popen(command, stderr=remarks, stdout=subprocess.DEVNULL)
     server = Server(process, log)
     try:
         ends_s = time.monotonic() + PATIENCE_S

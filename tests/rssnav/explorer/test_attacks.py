@@ -6,13 +6,15 @@ import json
 import signal
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from urllib.error import HTTPError
 
 import pytest
 
 pytest.importorskip("panel")
 pytest.importorskip("tornado")
 
-from explorer_client import Client, Server, clients, running_server
+from explorer_client import WITH_FEW_PAGES, Client, Server, clients, running_server
 from tornado.httpclient import HTTPClientError
 
 import floorplans
@@ -27,7 +29,8 @@ INFINITE = {"type": "number", "value": "+inf"}
 def server(tmp_path_factory) -> Iterator[Server]:
     with running_server(tmp_path_factory.mktemp("server") / "log.txt") as running:
         yield running
-        assert "Traceback" not in running.log.read_text(encoding="utf-8")
+        log = running.log.read_text(encoding="utf-8")
+        assert "Traceback" not in log, log
 
 
 @pytest.fixture
@@ -243,6 +246,30 @@ def test_hostile_uploads_stop_nobody(tab, make) -> None:
         attacker.upload("evil.toml", content)
         tab.still_works()
     attacker.until(lambda: "evil.toml" in attacker.texts)
+
+
+def refusal(server: Server) -> str:
+    """Why the server refuses a page for now; empty where it does not."""
+    try:
+        server.get()
+    except HTTPError as error:
+        with error:
+            return f"{error.code} {error.read().decode()}"
+    return ""
+
+
+def test_too_many_pages_and_connections_are_refused_for_a_while(tmp_path) -> None:
+    with running_server(tmp_path / "log.txt", WITH_FEW_PAGES) as server, clients(server) as make:
+        with ThreadPoolExecutor(20) as pool:
+            refused = [text for text in pool.map(lambda _: refusal(server), range(20)) if text]
+        assert refused
+        assert all(text.startswith("503") and "then reload" in text for text in refused)
+        time.sleep(5.0)  # until unused pages are forgotten
+        token = server.token()
+        for _ in range(5):
+            make().connect(token)
+        with pytest.raises(HTTPClientError, match="503"):
+            make().connect(token)
 
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])

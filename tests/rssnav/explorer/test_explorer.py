@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
 import socket
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import replace
-from threading import Event
+from threading import Event, get_ident
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,20 +21,20 @@ import floorplans
 import rssnav
 from floorplans import FloorPlan, PlanError
 from floorplans.geojson_plan import dumps_geojson
-from raytrace import RadioMap, TraceConfig
-from rssnav.explorer.background import NewestOnly, SupersededError
-from rssnav.explorer.cell_panel import page_3d, strongest
+from raytrace import Paths, RadioMap, TraceConfig
+from rssnav.explorer.background import FileMaker, NewestOnly, SupersededError, TooManyError
+from rssnav.explorer.cell_panel import _summary, page_3d, strongest
 from rssnav.explorer.downloads import figure_file, map_file, plan_file
 from rssnav.explorer.fair_turns import FairTurns, TabTurns
 from rssnav.explorer.file_names import file_name
-from rssnav.explorer.flight_player import FRAMES, first_frames, flight_at
+from rssnav.explorer.flight_player import FRAMES, FlightPlayer, first_frames, flight_at
 from rssnav.explorer.limits import Limits
 from rssnav.explorer.map_figure import MapFigure, path_colours
-from rssnav.explorer.page import Changes
+from rssnav.explorer.page import Changes, Page
 from rssnav.explorer.server import host_names, with_port
 from rssnav.explorer.session import Session, suggested_goal_dbm
-from rssnav.explorer.tracing import MapCache, MapSettings
-from rssnav.explorer.training import LiveTraining, TrainingSettings, kept_episodes
+from rssnav.explorer.tracing import CellPaths, MapCache, MapSettings
+from rssnav.explorer.training import Flight, LiveTraining, TrainingSettings, kept_episodes
 from rssnav.explorer.training_panel import running_mean
 from rssnav.explorer.uploads import read_upload
 from rssnav.maps import make_map
@@ -172,7 +175,7 @@ def test_paths_of_a_cell_add_up_to_the_map(session) -> None:
     i_y, i_x = session.cell
     assert found.receiver[:2] == (radio_map.grid.x[i_x], radio_map.grid.y[i_y])
     assert abs(found.receiver[0] - 9.6) <= 0.75
-    assert len(found.paths) == radio_map.path_count[i_y, i_x]
+    assert found.statistics.path_count[0] == radio_map.path_count[i_y, i_x]
     assert found.statistics.rss_dbm[0] == pytest.approx(radio_map.rss_dbm[i_y, i_x], abs=1e-9)
     assert 0.0 < found.statistics.delay_spread_s[0] <= np.ptp(found.paths.delay_s)
     for line in strongest(found):
@@ -343,6 +346,77 @@ def test_downloads_are_what_the_page_shows(session, tmp_path) -> None:
     assert floorplans.loads(plan_file(session).decode()) == session.plan
     assert figure_file(traced, ".png").startswith(b"\x89PNG")
     assert b"<svg" in figure_file(traced, ".svg")
+
+
+def test_files_are_made_one_by_one_beside_the_page() -> None:
+    files, threads = FileMaker(TabTurns(FairTurns(1))), list[int]()
+    go = Event()
+
+    def content() -> bytes:
+        assert go.wait(PATIENCE_S)
+        threads.append(get_ident())
+        return b"file"
+
+    async def clicks() -> list[object]:
+        made = asyncio.gather(
+            *(files.make(content) for _ in range(FileMaker.MOST + 1)), return_exceptions=True
+        )
+        await asyncio.sleep(0)  # the page answers while they wait
+        go.set()
+        return await made
+
+    with closing(asyncio.new_event_loop()) as loop:
+        *made, last = loop.run_until_complete(clicks())
+        files.close()
+        with pytest.raises(SupersededError):
+            loop.run_until_complete(files.make(content))
+    assert made == [b"file"] * FileMaker.MOST
+    assert isinstance(last, TooManyError)
+    assert set(threads) == {threads[0]}
+    assert threads[0] != get_ident()
+
+
+@pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")
+def test_the_learned_flight_is_shown_at_the_end_even_while_others_are_played() -> None:
+    shown: list[Flight] = []
+    player = FlightPlayer(lambda flight, _step: shown.append(flight))
+    flights = [Flight(k, np.zeros((4 + k, 2)), True) for k in (1, 2, 3)]
+    training = SimpleNamespace(flights=flights, settings=TrainingSettings(episodes=3))
+    player.follow(training)
+    player._player.direction = 1
+    player._player.value = 0
+    assert shown[-1] is flights[0]
+    flights.append(Flight(3, np.zeros((4, 2)), True, learned=True))
+    player.follow(training)
+    assert shown[-1] is flights[-1]
+    assert player._player.direction == 0
+    player.show(True)
+    assert player.view.visible
+
+
+def test_a_cell_has_one_number_of_paths() -> None:
+    halves = Paths(
+        receiver=np.zeros(3, np.int64),
+        interactions=np.zeros((3, 0), np.int8),
+        vertices=np.zeros((3, 2, 3)),
+        length_m=np.ones(3),
+        gain=np.full(3, 1e-3 + 0j),
+        weight=np.array([1.0, 0.5, 0.5]),
+    )
+    found = CellPaths(FLAT, MapSettings(), (1.0, 1.0, 1.0), halves)
+    assert "<dt>paths</dt><dd>2</dd>" in _summary(found)
+
+
+@pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")
+def test_a_read_upload_leaves_an_empty_dropper(session) -> None:
+    page = Page(session)
+    before = page._plan_panel._upload[0]
+    session.upload("bad.toml", b"name = ")
+    wait_for(lambda: session._uploaded is not None)
+    page.refresh()
+    assert "bad.toml" in session.problem
+    assert page._plan_panel._upload[0] is not before
+    session.problem = ""
 
 
 @pytest.mark.parametrize(
