@@ -16,6 +16,9 @@ Edge = tuple[int, int]
 MOST_FLIPS = 10
 """Flips per flat triangle."""
 
+_MANY = 64
+"""Corners from which on it is faster to find the convex hull of a ring first."""
+
 
 def convex_parts(
     faces: Sequence[shapely.Polygon], index: dict[Vertex, int], walls: Collection[Edge]
@@ -133,6 +136,9 @@ def _is_convex(corners: Floats) -> bool:
     """Whether no corner of a ring lies farther than `GRAZING_M` beyond one of its edges."""
     ahead = np.roll(corners, -1, axis=0) - corners
     ahead /= np.hypot(*ahead.T)[:, None]
-    offset = corners[None, :] - corners[:, None]
+    farthest = corners
+    if len(corners) > _MANY:  # the corners farthest beyond an edge are those of the convex hull
+        farthest = shapely.get_coordinates(shapely.convex_hull(shapely.linestrings(corners)))
+    offset = farthest[None, :] - corners[:, None]
     inside = ahead[:, :1] * offset[:, :, 1] - ahead[:, 1:] * offset[:, :, 0]
     return bool(inside.min() >= -GRAZING_M)
