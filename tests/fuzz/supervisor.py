@@ -19,6 +19,9 @@ from fuzz.targets import TARGETS
 from fuzz.worker import CURRENT, OUTPUT, Failure, Report, Task, work
 
 HANG_S = 10.0
+"""Processor time that an input may take [s]."""
+WAIT_S = 200.0
+"""Time that an input may take in all, where other programs need the processors [s]."""
 BATCH = 100
 IN_MEMORY = "/dev/shm"
 KINDS = ("traceback", "hang", "crash", "memory")
@@ -64,13 +67,22 @@ def _fast_folder() -> str | None:
     return IN_MEMORY if os.access(IN_MEMORY, os.W_OK) else None
 
 
+def processor_s(process: int) -> float:
+    """Processor time that a process has used [s]; 0 where it has ended."""
+    try:
+        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
+
+
 class Worker:
     """A worker process and the task it has."""
 
     def __init__(self, random_seed: int) -> None:
         self._seed = random_seed
         self._folder = tempfile.TemporaryDirectory(dir=_fast_folder())
-        self._state = _CONTEXT.RawArray("d", 2)
+        self._state = _CONTEXT.RawArray("d", 3)
         self.task: Task | None = None
         self._start()
 
@@ -110,8 +122,14 @@ class Worker:
                 return self.tasks.recv()
             except (EOFError, ConnectionResetError):
                 return self._lost("crash")
+        return self._lost("hang") if self._hangs() else None
+
+    def _hangs(self) -> bool:
         began = self._state[0]
-        return self._lost("hang") if began and time.monotonic() - began > HANG_S else None
+        waited_s = time.monotonic() - began if began else 0.0
+        if waited_s <= HANG_S:
+            return False
+        return waited_s > WAIT_S or processor_s(self._process.pid) - self._state[2] > HANG_S
 
     def _lost(self, kind: str) -> Report:
         """Start again after the input that ended the process."""
@@ -122,7 +140,9 @@ class Worker:
         case = (Path(self._folder.name) / CURRENT).read_bytes()
         at = int(self._state[1])
         name = self.task.target
-        reason = f"exit code {code}" if kind == "crash" else f"more than {HANG_S:g} s"
+        reason = (
+            f"exit code {code}" if kind == "crash" else f"more than {HANG_S:g} s of processor time"
+        )
         printed = (Path(self._folder.name) / OUTPUT).read_text(errors="replace")
         detail = f"{reason}\n{printed[-3000:]}"
         failure = Failure(name, kind, f"{name}: {kind}, {reason}", case, detail)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 
 import pytest
 
@@ -51,6 +52,7 @@ class _Pipe:
 @pytest.mark.parametrize(("is_closed", "kind"), [(True, "crash"), (False, "hang")])
 def test_a_lost_worker_is_replaced_and_its_input_kept(monkeypatch, is_closed, kind) -> None:
     monkeypatch.setattr(supervisor, "HANG_S", 0.0)
+    monkeypatch.setattr(supervisor, "processor_s", lambda _: 1.0)
     monkeypatch.setattr(supervisor.Worker, "_start", lambda self: None)
     worker = supervisor.Worker(0)
     worker._process = _Dead()
@@ -60,7 +62,7 @@ def test_a_lost_worker_is_replaced_and_its_input_kept(monkeypatch, is_closed, ki
     for name in (supervisor.CURRENT, supervisor.OUTPUT):
         with open(os.path.join(folder, name), "w") as file:
             file.write("input")
-    worker._state[:] = 1e-9, 7
+    worker._state[:] = 1e-9, 7, 0.5
     report = worker.result(0.0)
     worker._folder.cleanup()
     assert report is not None
@@ -70,11 +72,22 @@ def test_a_lost_worker_is_replaced_and_its_input_kept(monkeypatch, is_closed, ki
 
 
 class _Dead:
+    pid = 0
     exitcode = -signal.SIGSEGV
 
     def kill(self) -> None: ...
 
     def join(self) -> None: ...
+
+
+def test_an_input_that_waits_for_a_processor_does_not_hang(monkeypatch) -> None:
+    monkeypatch.setattr(supervisor.Worker, "_start", lambda self: None)
+    worker = supervisor.Worker(0)
+    worker._process, worker.task, worker.tasks = _Dead(), Task("plan", size=50), _Pipe(False)
+    worker._state[:] = time.monotonic() - 2.0 * supervisor.HANG_S, 7, 0.5
+    monkeypatch.setattr(supervisor, "processor_s", lambda _: 0.6)
+    assert worker.result(0.0) is None
+    worker._folder.cleanup()
 
 
 def test_failures_become_smaller_as_long_as_they_stay(monkeypatch) -> None:

@@ -85,7 +85,7 @@ def work(tasks: Connection, state: Any, folder: str, random_seed: int) -> None:
         Tasks come in and reports go out.
     state
         Shared with the supervisor: when the current input began, as `time.monotonic`, 0 between
-        inputs, and its index within the batch.
+        inputs; its index within the batch; and when it began, as `time.process_time`.
     folder
         For the files of the inputs; the current one stays there if the process is ended.
     """
@@ -101,7 +101,7 @@ def work(tasks: Connection, state: Any, folder: str, random_seed: int) -> None:
             if index < task.first:
                 continue
             (Path(folder) / CURRENT).write_bytes(case)
-            state[1], state[0] = index, time.monotonic()
+            state[1], state[2], state[0] = index, time.process_time(), time.monotonic()
             failure = run_case(task.target, case, Path(folder))
             state[0] = 0.0
             failures += [failure] if failure else []

@@ -25,20 +25,34 @@ def main() -> int:
     """Run the attacks, print faults and counts; return 1 if there is a fault."""
     arguments = _arguments()
     names = arguments.job or list(FAST if arguments.fast else JOBS)
-    counts = dict.fromkeys((*ATTACKS, "caches"), 0)
+    counts, kills = dict.fromkeys((*ATTACKS, "caches"), 0), dict.fromkeys(names, 0)
     slowest_s, n_faults = 0.0, 0
     with tempfile.TemporaryDirectory() as folder:
         Path(folder).chmod(0o755)  # a stranger must come as far as the cache
         workshop = Workshop(Path(folder))
         for kind, attacked in _attacks(names, workshop, arguments):
             counts[kind] += attacked.n_attacks
+            if kind == "kills":
+                kills[attacked.name] += attacked.n_attacks
             slowest_s = max(slowest_s, attacked.slowest_s)
             n_faults += len(attacked.faults)
             for fault in attacked.faults:
                 print(f"{kind}, {attacked.name}: {fault}", flush=True)
+    n_faults += _never_killed(kills, arguments.kills)
+    by_command = ", ".join(f"{count} {name}" for name, count in kills.items())
     counted = ", ".join(f"{count} {kind}" for kind, count in counts.items())
+    counted = counted.replace(" kills", f" kills ({by_command})", 1)
     print(f"{counted}: {n_faults} faults; slowest end {slowest_s:.1f} s after its signal")
     return int(n_faults > 0)
+
+
+def _never_killed(kills: dict[str, int], wanted: int) -> int:
+    """Print which commands were never killed though there were kills for all; return how many."""
+    never = [name for name, count in kills.items() if not count]
+    if not never or wanted < sum(JOBS[name].kills for name in kills):
+        return 0
+    print(f"kills: never {', '.join(never)}")
+    return len(never)
 
 
 def _arguments() -> argparse.Namespace:

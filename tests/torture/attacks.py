@@ -22,6 +22,10 @@ CODES = {signal.SIGKILL: -signal.SIGKILL, signal.SIGINT: 130, signal.SIGTERM: 14
 """Exit codes after a signal."""
 START_S = 60.0
 """Longest time until a program handles signals."""
+TRIES = 3
+"""A job that has always ended before its signals is tried this many times as often as wanted."""
+SHORTEST = 0.2
+"""A job that continues is taken to need at least this fraction of its time."""
 SLOW_S = 5.0
 """An interrupted process ends within this, longer where more processes run than there are cores."""
 
@@ -52,17 +56,20 @@ def kill_at_random(
     """End a job several times, then let it finish: nothing is half, lost or left behind."""
     job, folder, wanted = JOBS[name], workshop.before(name), workshop.after(name)
     faults: list[str] = []
-    slowest_s, n_kills, duration_s = 0.0, 0, workshop.duration_s(name)
-    for _ in range(kills or job.kills):
+    slowest_s, n_kills, tries, most = 0.0, 0, 0, kills or job.kills
+    left_s = duration_s = workshop.duration_s(name)
+    while n_kills < most and tries < TRIES * most:
+        tries += 1
         sent = generator.choice(SIGNALS)
-        moment_s = duration_s * generator.random()
+        moment_s = generator.choice((duration_s, left_s)) * generator.random()
         ended = _end(job, folder, sent, moment_s, while_writing=generator.random() < 0.3)
         faults += [f"{sent.name} after {moment_s:.2f} s: {fault}" for fault in ended.faults(sent)]
         faults += half_files(folder)
         slowest_s, n_kills = max(slowest_s, ended.took_s), n_kills + ended.was_running
+        left_s = max(left_s - moment_s, SHORTEST * duration_s)  # where it continues what was kept
         if not ended.was_running:  # there is nothing left to resume
             faults += differences(folder, wanted)
-            folder = workshop.before(name)
+            folder, left_s = workshop.before(name), duration_s
     try:
         run_to_end(job, folder)
     except RuntimeError as error:

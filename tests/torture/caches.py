@@ -62,19 +62,25 @@ def attacks(workshop: Workshop) -> Iterator[Attacked]:
 
 
 def damaged(place: Path) -> Setting:
-    """A copy of the cache in which some files are cut, changed, empty, or folders."""
+    """A copy of the cache in which some files are cut, changed or empty."""
     generator = random.Random(0)
-    caches, n_lines = _copy(place), 1
-    for path in sorted(path for path in caches.rglob("*.nb?") if generator.random() < 0.2):
-        content = path.read_bytes()
-        at = generator.randrange(len(content))
-        path.unlink()
-        if generator.random() < 0.1:
-            path.mkdir()
-            n_lines = 2  # what cannot be kept is reported as well
-        else:
+    for path in sorted(_copy(place).rglob("*.nb?")):
+        if generator.random() < 0.2:
+            content = path.read_bytes()
+            at = generator.randrange(len(content))
             path.write_bytes(generator.choice((b"", content[:at], content[:at] + b"?" + content)))
-    return Setting({"XDG_CACHE_HOME": str(place)}, MAP, lines=n_lines)
+    return Setting({"XDG_CACHE_HOME": str(place)}, MAP, lines=1)
+
+
+def blocked(place: Path) -> Setting:
+    """A copy of the cache with a folder in the place of each file of code.
+
+    What is damaged there is one line, and what cannot be kept there another.
+    """
+    for path in _copy(place).rglob("*.nbc"):
+        path.unlink()
+        path.mkdir()
+    return Setting({"XDG_CACHE_HOME": str(place)}, MAP, lines=2)
 
 
 def read_only(place: Path) -> Setting:
@@ -112,6 +118,7 @@ def empty_variable(place: Path) -> Setting:
 
 SETTINGS: dict[str, Callable[[Path], Setting]] = {
     "damaged": damaged,
+    "with folders for files": blocked,
     "read-only": read_only,
     "in an unwritable folder": unwritable,
     "without a folder": no_folder,

@@ -68,11 +68,11 @@ JOBS = {
     "plan show": Job(("plan", "show", "room.toml", "-o", "plan.png")),
     "plan check": Job(("plan", "check", "misfit.toml", "--fix", "-o", "fixed.toml")),
     "maps": Job(("maps", "--out", "results/maps"), kills=6),
-    "experiments": Job(("experiments", "--runs", "1", *_STUDY), ("maps",), kills=12),
-    "noise": Job(("experiments", "noise", *_STUDY), ("maps",), kills=12),
-    "sensitivity": Job(("experiments", "sensitivity", *_STUDY), ("maps",), kills=12),
-    "comparison": Job(("experiments", "comparison", *_STUDY), ("maps",), kills=12),
-    "report": Job(("report", "--out", "results", "--threads", "1"), ("experiments",), kills=8),
+    "experiments": Job(("experiments", "--runs", "1", *_STUDY), ("maps",), kills=6),
+    "noise": Job(("experiments", "noise", *_STUDY), ("maps",), kills=6),
+    "sensitivity": Job(("experiments", "sensitivity", *_STUDY), ("maps",), kills=6),
+    "comparison": Job(("experiments", "comparison", *_STUDY), ("maps",), kills=6),
+    "report": Job(("report", "--out", "results", "--threads", "1"), ("experiments",), kills=6),
 }
 """By name; the first ones take seconds, the last ones minutes."""
 
