@@ -7,7 +7,8 @@
 
 A reader for each format turns its file into a `Draft`; `assemble` makes the walls meet, attaches
 doors and windows to them, finds the outline and gives a default to what the file does not state.
-`Imported` holds the plan and lists what was assumed and changed.
+`Imported` holds the plan and lists what was assumed and changed. A plan that fails its checks is
+the `DraftPlan` of an `UnusablePlanError`.
 """
 
 from floorplans.importers.assembly.assemble import assemble
@@ -21,19 +22,22 @@ from floorplans.importers.draft import (
     RawWall,
 )
 from floorplans.importers.formats import FORMATS, import_plan, read_draft
-from floorplans.importers.imported import Imported
+from floorplans.importers.imported import DraftPlan, Imported, ImportRecord, UnusablePlanError
 from floorplans.importers.layer_file import layers_toml, read_layers
 
 __all__ = [
     "FORMATS",
     "Assumption",
     "Draft",
+    "DraftPlan",
     "ImportOptions",
+    "ImportRecord",
     "Imported",
     "LayerUse",
     "Origin",
     "RawOpening",
     "RawWall",
+    "UnusablePlanError",
     "assemble",
     "import_plan",
     "layers_toml",

@@ -4,6 +4,9 @@ HEIGHT_M = 3.0
 """From floor to ceiling [m]."""
 SLAB_MATERIAL = "concrete"
 
+CLOSED_GAP_M = 8.0
+"""Widest gap in the outline that is closed [m]."""
+
 WALL_THICKNESS_M = 0.1
 WALL_MATERIAL = "plasterboard"
 THICK_WALL_MATERIAL, THICK_M = "concrete", 0.18

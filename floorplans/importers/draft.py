@@ -14,6 +14,8 @@ from math import hypot, radians, sin
 from shapely.geometry import LineString, Polygon
 
 from floorplans.georeference import GeoOrigin
+from floorplans.importers.known_pixels import KnownPixels
+from floorplans.importers.original import Original
 from floorplans.materials import PlanMaterial
 from floorplans.walls import OpeningKind, Point
 
@@ -50,6 +52,8 @@ class ImportOptions:
         default depends on the format.
     keep_axes : bool
         Keep the drawing's axes where most walls stand at an angle to them.
+    close_gaps_m : float or None
+        Gaps in the outline up to this width are closed [m]; by default 8.
     layers : mapping of str to str
         Layer, class or type of the file -> KIND or KIND:MATERIAL; overrides the defaults.
     """
@@ -67,6 +71,7 @@ class ImportOptions:
     scale_m: float | None = None
     tolerance_m: float | None = None
     keep_axes: bool = False
+    close_gaps_m: float | None = None
     layers: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
@@ -216,6 +221,14 @@ class Draft:
         What the reader took for granted.
     notes : tuple of str
         Further information for the user, one sentence each.
+    warnings : tuple of str
+        What the user should look at, one sentence each.
+    closed : tuple of ((float, float), (float, float))
+        Openings in the outline that the reader has closed, from (x, y) to (x, y) [m].
+    known : KnownPixels or None
+        Of a robot's map.
+    original : Original or None
+        What the file shows, in the coordinates of the walls.
     """
 
     name: str
@@ -231,3 +244,7 @@ class Draft:
     materials: tuple[PlanMaterial, ...] = ()
     assumed: tuple[Assumption, ...] = ()
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    closed: tuple[tuple[Point, Point], ...] = ()
+    known: KnownPixels | None = None
+    original: Original | None = None

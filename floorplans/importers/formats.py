@@ -12,7 +12,7 @@ from shapely.errors import GEOSException
 from floorplans.errors import PlanError
 from floorplans.importers.assembly.assemble import assemble
 from floorplans.importers.draft import Draft, ImportOptions
-from floorplans.importers.imported import Imported
+from floorplans.importers.imported import Imported, UnusablePlanError
 from floorplans.importers.own_axes import oblique_deg, placed, turned
 from floorplans.plan import FloorPlan
 
@@ -143,7 +143,10 @@ def import_plan(path: str | Path, options: ImportOptions | None = None) -> Impor
             return Imported.from_plan(drafted, options, path.name)
         turn_deg = 0.0 if options.keep_axes else oblique_deg(drafted.walls)
         own = turned(drafted, turn_deg) if turn_deg else drafted
-        return placed(assemble(own, options, path.name), drafted, turn_deg)
+        try:
+            return placed(assemble(own, options, path.name), drafted, turn_deg)
+        except UnusablePlanError as error:
+            raise error.with_draft(placed(error.draft, drafted, turn_deg)) from None
     except PlanError as error:
         raise error.located(str(path)) from error
     except GEOSException as error:

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from floorplans.errors import Place, PlanError
 from floorplans.importers.draft import Assumption, ImportOptions, LayerUse, Origin
+from floorplans.importers.original import Original
 from floorplans.plan import FloorPlan
 from floorplans.repair.walls import Change
 from floorplans.toml.writer import dumps
+from floorplans.unchecked import UncheckedPlan
+from floorplans.walls import Point
 
 
-@dataclass(frozen=True)
-class Imported:
-    """The result of an import.
+@dataclass(frozen=True, kw_only=True)
+class ImportRecord:
+    """What an import made, and how.
 
     Attributes
     ----------
-    plan : FloorPlan
+    plan : UncheckedPlan
     source_file : str
         Name of the file it came from, without its folder.
     origin : Origin
@@ -29,25 +33,21 @@ class Imported:
         Repairs that made walls meet and the outline close.
     notes : tuple of str
         Further information for the user, one sentence each.
+    warnings : tuple of str
+        What the user should look at, one sentence each.
+    original : Original or None
+        What the file shows, in the plan's coordinates.
     """
 
-    plan: FloorPlan
+    plan: UncheckedPlan
     source_file: str
     origin: Origin
     assumed: tuple[Assumption, ...] = ()
     layers: tuple[LayerUse, ...] = ()
     changes: tuple[Change, ...] = ()
     notes: tuple[str, ...] = ()
-
-    @classmethod
-    def from_plan(cls, plan: FloorPlan, options: ImportOptions, source_file: str) -> Imported:
-        """Wrap a complete plan; only what the options specify is replaced."""
-        given = {
-            key: getattr(options, key)
-            for key in ("name", "floor_material", "ceiling_material", "source", "start")
-            if getattr(options, key) is not None
-        }
-        return cls(replace(plan, **given), source_file, Origin(0.0, 0.0, "the file, in metres"))
+    warnings: tuple[str, ...] = ()
+    original: Original | None = None
 
     @property
     def report(self) -> tuple[str, ...]:
@@ -56,6 +56,7 @@ class Imported:
             *(f"layer {use.name}: {use.n_objects} objects: {use.became}" for use in self.layers),
             *(f"assumed {a.key} = {a.value}: {a.why}" for a in self.assumed),
             *(str(change) for change in self.changes),
+            *(f"warning: {sentence}" for sentence in self.warnings),
             *self.notes,
         )
 
@@ -90,6 +91,67 @@ class Imported:
 
     def _lines(self) -> list[str]:
         return dumps(self.plan).splitlines()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Imported(ImportRecord):
+    """The result of an import: a usable plan, and how it was made."""
+
+    plan: FloorPlan
+
+    @classmethod
+    def from_plan(cls, plan: FloorPlan, options: ImportOptions, source_file: str) -> Imported:
+        """Wrap a complete plan; only what the options specify is replaced."""
+        given = {
+            key: getattr(options, key)
+            for key in ("name", "floor_material", "ceiling_material", "source", "start")
+            if getattr(options, key) is not None
+        }
+        origin = Origin(0.0, 0.0, "the file, in metres")
+        return cls(plan=replace(plan, **given), source_file=source_file, origin=origin)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DraftPlan(ImportRecord):
+    """A plan that fails its checks, as a start for corrections by hand.
+
+    Attributes
+    ----------
+    faults : tuple of PlanError
+        What is wrong with it.
+    gaps : tuple of ((float, float), (float, float))
+        Where its outline has no wall, from (x, y) to (x, y) [m].
+    """
+
+    faults: tuple[PlanError, ...] = ()
+    gaps: tuple[tuple[Point, Point], ...] = ()
+
+    def _header(self) -> list[str]:
+        lines = ["DRAFT, not traceable until these faults are corrected:"]
+        lines += [f"  {fault}" for fault in self.faults]
+        return [*(_comment(f"# {line}") for line in lines), *super()._header()]
+
+
+class UnusablePlanError(PlanError):
+    """What was imported is no usable plan; `draft` holds it nevertheless."""
+
+    def __init__(self, draft: DraftPlan, problem: str, origin: str = "") -> None:
+        super().__init__(problem, origin=origin, at=draft.faults[0].at, remedy=_remedy(draft))
+        self.draft = draft
+
+    def located(
+        self, origin: str = "", *, place: Place | None = None, at: Point | None = None
+    ) -> UnusablePlanError:
+        """Return the same error with the file it is about."""
+        return UnusablePlanError(self.draft, self.problem, self.origin or origin)
+
+    def with_draft(self, draft: DraftPlan) -> UnusablePlanError:
+        """Return the same error about another draft."""
+        return UnusablePlanError(draft, self.problem, self.origin)
+
+
+def _remedy(draft: DraftPlan) -> str | None:
+    return "close_gaps_m" if draft.gaps else None
 
 
 def _comment(text: str) -> str:

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from floorplans.frame import PlanFrame
+from floorplans.frame import PlanFrame, rotation
 from floorplans.georeference import GeoOrigin
 from floorplans.importers.draft import Draft, Origin, RawWall
-from floorplans.importers.imported import Imported
+from floorplans.importers.imported import ImportRecord
+from floorplans.importers.original import Affine
 from floorplans.repair.geometry import tidy_point
 from floorplans.walls import Point
 
@@ -26,6 +28,8 @@ LEAST_DEG = 0.5
 _WINDOW_DEG = 2.0
 _MAJORITY = 0.5
 _DECIMALS = 6
+
+Made = TypeVar("Made", bound=ImportRecord)
 
 
 def oblique_deg(walls: Sequence[RawWall]) -> float:
@@ -77,15 +81,24 @@ def turned(draft: Draft, angle_deg: float) -> Draft:
             for opening in draft.openings
         ),
         outline=None if draft.outline is None else shapely.transform(draft.outline, frame.to_plan),
+        closed=tuple(shapely.transform(line, frame.to_plan) for line in draft.closed),
+        known=None if draft.known is None else draft.known.moved(frame.to_plan),
+        original=None if draft.original is None else draft.original.transformed(_affine(frame)),
     )
 
 
-def placed(imported: Imported, draft: Draft, angle_deg: float) -> Imported:
+def _affine(frame: PlanFrame) -> Affine:
+    """From the drawing to the plan, both with the same (0, 0)."""
+    (a, b), (c, d) = rotation(-frame.rotation_deg).tolist()
+    return ((a, b, 0.0), (c, d, 0.0))
+
+
+def placed(imported: Made, draft: Draft, angle_deg: float) -> Made:
     """Add to a plan its place in the drawing and on the Earth.
 
     Parameters
     ----------
-    imported : Imported
+    imported : Imported or DraftPlan
         Made from the turned draft.
     draft : Draft
         As it was read.

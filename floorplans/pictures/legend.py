@@ -11,7 +11,7 @@ from matplotlib.path import Path
 
 from floorplans.materials import MATERIALS
 from floorplans.pictures.symbols import leaf_and_arc
-from floorplans.plan import FloorPlan
+from floorplans.unchecked import UncheckedPlan
 from floorplans.walls import Opening, Wall
 
 INK = "#222222"
@@ -25,7 +25,7 @@ _MARKERS: dict[str, dict[str, Any]] = {
 }
 
 
-def markers(plan: FloorPlan) -> Iterator[tuple[Line2D, tuple[float, float, float]]]:
+def markers(plan: UncheckedPlan) -> Iterator[tuple[Line2D, tuple[float, float, float]]]:
     """Yield markers of source, transmitters and start, as far as there are, and their places."""
     placed = [("transmitter", transmitter.position) for transmitter in plan.transmitters]
     if plan.source is not None:
@@ -38,12 +38,12 @@ def markers(plan: FloorPlan) -> Iterator[tuple[Line2D, tuple[float, float, float
         yield artist, position
 
 
-def marker_handles(plan: FloorPlan) -> list[Artist]:
+def marker_handles(plan: UncheckedPlan) -> list[Artist]:
     """One marker of each kind that the plan has, for a legend."""
     return list({artist.get_gid(): artist for artist, _ in markers(plan)}.values())
 
 
-def material_handles(plan: FloorPlan) -> Iterator[Artist]:
+def material_handles(plan: UncheckedPlan) -> Iterator[Artist]:
     """Yield a patch for each material of walls and fillings: built-in ones, then the plan's own."""
     used = {wall.material for wall in plan.walls}
     used |= {o.material for _, o in plan_openings(plan) if o.material is not None}
@@ -52,7 +52,7 @@ def material_handles(plan: FloorPlan) -> Iterator[Artist]:
             yield Patch(facecolor=plan.colour_of(material), label=material.replace("_", " "))
 
 
-def kind_handles(plan: FloorPlan) -> Iterator[Artist]:
+def kind_handles(plan: UncheckedPlan) -> Iterator[Artist]:
     """Yield the symbols of low walls and of the kinds of openings that the plan has."""
     for height_m in sorted({wall.height_m for wall in plan.walls if is_low(wall, plan)}):
         yield Patch(facecolor=("k", 0.2), edgecolor="k", lw=0.4, label=f"wall {height_m:g} m high")
@@ -65,14 +65,14 @@ def kind_handles(plan: FloorPlan) -> Iterator[Artist]:
     yield from (symbol for kind, symbol in symbols.items() if kind in used)
 
 
-def plan_openings(plan: FloorPlan) -> Iterator[tuple[Wall, Opening]]:
+def plan_openings(plan: UncheckedPlan) -> Iterator[tuple[Wall, Opening]]:
     """Yield every opening with its wall."""
     for wall in plan.walls:
         for opening in wall.openings:
             yield wall, opening
 
 
-def is_low(wall: Wall, plan: FloorPlan) -> bool:
+def is_low(wall: Wall, plan: UncheckedPlan) -> bool:
     """Whether a wall ends below the ceiling."""
     return wall.height_m < plan.height_m
 

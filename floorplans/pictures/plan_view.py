@@ -29,7 +29,7 @@ from floorplans.pictures.legend import (
     plan_openings,
 )
 from floorplans.pictures.symbols import DoorSwings, WallStrips, strip, strip_edges
-from floorplans.plan import FloorPlan
+from floorplans.unchecked import UncheckedPlan
 
 MIN_WIDTH = 0.004
 """Least drawn width of walls, as a fraction of the plan's longer side."""
@@ -44,12 +44,12 @@ _LABELS_IN = 0.45
 Quads = list[NDArray[np.float64]]
 
 
-def draw_plan(plan: FloorPlan, ax: Axes) -> None:
+def draw_plan(plan: UncheckedPlan, ax: Axes) -> None:
     """Draw a plan from above, with legend, scale bar, and axes in metres.
 
     Parameters
     ----------
-    plan : FloorPlan
+    plan : UncheckedPlan
     ax : matplotlib.axes.Axes
         The legend lies below it: give its figure ``layout="constrained"`` or save it with
         ``bbox_inches="tight"``.
@@ -65,12 +65,12 @@ def draw_plan(plan: FloorPlan, ax: Axes) -> None:
     _set_up_axes(plan, ax)
 
 
-def save_plan_picture(plan: FloorPlan, path: str | Path, *, width_in: float = PAGE_IN) -> None:
+def save_plan_picture(plan: UncheckedPlan, path: str | Path, *, width_in: float = PAGE_IN) -> None:
     """Draw a plan from above into a file, which is written whole or not at all.
 
     Parameters
     ----------
-    plan : FloorPlan
+    plan : UncheckedPlan
     path : str or Path
         Its suffix names the format: .png, .svg or .pdf.
     width_in : float
@@ -86,7 +86,7 @@ def save_plan_picture(plan: FloorPlan, path: str | Path, *, width_in: float = PA
         figure.savefig(beside, dpi=300, bbox_inches="tight", pad_inches=0.03)
 
 
-def _draw_floor(plan: FloorPlan, ax: Axes) -> None:
+def _draw_floor(plan: UncheckedPlan, ax: Axes) -> None:
     rings = [plan.outline.exterior, *plan.outline.interiors]
     colours = [FLOOR] + ["white"] * len(plan.outline.interiors)
     floor = PolyCollection([get_coordinates(ring) for ring in rings], facecolors=colours, zorder=0)
@@ -94,7 +94,7 @@ def _draw_floor(plan: FloorPlan, ax: Axes) -> None:
     ax.add_collection(floor)
 
 
-def _draw_walls(plan: FloorPlan, ax: Axes, strips: WallStrips) -> None:
+def _draw_walls(plan: UncheckedPlan, ax: Axes, strips: WallStrips) -> None:
     """Draw walls and columns by material: low walls under the others, thick over thin."""
     by_style: defaultdict[tuple[bool, str], Quads] = defaultdict(list)
     for wall in sorted(plan.walls, key=lambda wall: wall.thickness_m):
@@ -116,7 +116,7 @@ def _draw_walls(plan: FloorPlan, ax: Axes, strips: WallStrips) -> None:
         ax.add_collection(collection)
 
 
-def _draw_openings(plan: FloorPlan, ax: Axes, strips: WallStrips) -> None:
+def _draw_openings(plan: UncheckedPlan, ax: Axes, strips: WallStrips) -> None:
     fillings: defaultdict[str, Quads] = defaultdict(list)
     lines: defaultdict[str, Quads] = defaultdict(list)
     swings = DoorSwings(plan)
@@ -142,13 +142,13 @@ def _draw_openings(plan: FloorPlan, ax: Axes, strips: WallStrips) -> None:
         ax.add_collection(collection)
 
 
-def _draw_markers(plan: FloorPlan, ax: Axes) -> None:
+def _draw_markers(plan: UncheckedPlan, ax: Axes) -> None:
     for artist, (x, y, _) in markers(plan):
         artist.set_data([x], [y])
         ax.add_line(artist)
 
 
-def _draw_scale_bar(plan: FloorPlan, ax: Axes) -> None:
+def _draw_scale_bar(plan: UncheckedPlan, ax: Axes) -> None:
     """Draw a bar of round length, half dark and half light, above the plan's right corner."""
     x_min, y_min, x_max, y_max = plan.bounds
     extent = max(x_max - x_min, y_max - y_min)
@@ -175,7 +175,7 @@ def _round_length(length: float) -> float:
     return max(step for step in (1, 2, 5) if step * power <= length * (1 + 1e-9)) * power
 
 
-def _draw_legend(plan: FloorPlan, ax: Axes) -> None:
+def _draw_legend(plan: UncheckedPlan, ax: Axes) -> None:
     figure = ax.get_figure(root=True)
     assert figure is not None
     below = ScaledTranslation(0, -0.5, figure.dpi_scale_trans)
@@ -191,7 +191,7 @@ def _draw_legend(plan: FloorPlan, ax: Axes) -> None:
     )
 
 
-def _set_up_axes(plan: FloorPlan, ax: Axes) -> None:
+def _set_up_axes(plan: UncheckedPlan, ax: Axes) -> None:
     x_min, y_min, x_max, y_max = plan.bounds
     extent = max(x_max - x_min, y_max - y_min)
     margin = 0.01 * extent + max(wall.thickness_m for wall in plan.walls) / 2

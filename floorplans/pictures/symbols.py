@@ -8,7 +8,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiLineString, Point
 
-from floorplans.plan import FloorPlan
+from floorplans.unchecked import UncheckedPlan
 from floorplans.walls import TOLERANCE_M, Opening, Wall, complement
 from floorplans.walls import Point as PlanPoint
 
@@ -37,12 +37,12 @@ class WallStrips:
 
     Parameters
     ----------
-    plan : FloorPlan
+    plan : UncheckedPlan
     min_width_m : float
         Thinner walls are drawn this wide [m].
     """
 
-    def __init__(self, plan: FloorPlan, min_width_m: float) -> None:
+    def __init__(self, plan: UncheckedPlan, min_width_m: float) -> None:
         self._min_width_m = min_width_m
         self._walls_at: defaultdict[PlanPoint, list[Wall]] = defaultdict(list)
         for wall in plan.walls:
@@ -76,10 +76,10 @@ class DoorSwings:
 
     Parameters
     ----------
-    plan : FloorPlan
+    plan : UncheckedPlan
     """
 
-    def __init__(self, plan: FloorPlan) -> None:
+    def __init__(self, plan: UncheckedPlan) -> None:
         lines = [[wall.start, wall.end] for wall in plan.walls]
         self._walls = MultiLineString(lines)
         x_min, y_min, x_max, y_max = plan.bounds

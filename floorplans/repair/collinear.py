@@ -24,7 +24,7 @@ from floorplans.walls import TOLERANCE_M, Interval, Opening, Wall, centre_lines
 
 _MAX_SINE = sin(radians(3.0))
 """Sine of the largest angle between collinear walls."""
-_THICKNESS_FRACTION = 0.25
+THICKNESS_FRACTION = 0.25
 """Walls whose centre lines are nearer than this fraction of their thickness are collinear."""
 _SAME_THICKNESS_M = 1e-3
 
@@ -42,7 +42,7 @@ def merge_lines(
     reach_m: float,
     thickness_fraction: float,
     changes: list[Change],
-    sideways_fraction: float = _THICKNESS_FRACTION,
+    sideways_fraction: float = THICKNESS_FRACTION,
 ) -> tuple[Wall, ...]:
     """Merge collinear walls, so that no two walls run along each other.
 

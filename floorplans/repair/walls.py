@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import KDTree
 
-from floorplans.repair.collinear import merge_lines
+from floorplans.repair.collinear import THICKNESS_FRACTION, merge_lines
 from floorplans.repair.ends import snap_ends
 from floorplans.repair.geometry import Change, moved_wall, points_on_walls
 from floorplans.walls import TOLERANCE_M, Opening, Wall
@@ -42,7 +42,10 @@ class RepairedWalls(NamedTuple):
 
 
 def repair_walls(
-    walls: Sequence[Wall], reach_m: float = REACH_M, thickness_fraction: float = 0.0
+    walls: Sequence[Wall],
+    reach_m: float = REACH_M,
+    thickness_fraction: float = 0.0,
+    sideways_fraction: float = THICKNESS_FRACTION,
 ) -> RepairedWalls:
     """Make walls meet that almost meet, and merge walls that run along each other.
 
@@ -54,6 +57,8 @@ def repair_walls(
     thickness_fraction : float
         Collinear walls are joined where their thicknesses differ by at most this fraction; the
         joined wall has their mean thickness, weighted by length.
+    sideways_fraction : float
+        Fraction of its thickness by which a wall may be moved sideways, besides the reach.
 
     Returns
     -------
@@ -70,7 +75,7 @@ def repair_walls(
     changes: list[Change] = []
     for _ in range(_MAX_PASSES):
         before = len(changes)
-        repaired = merge_lines(repaired, reach_m, thickness_fraction, changes)
+        repaired = merge_lines(repaired, reach_m, thickness_fraction, changes, sideways_fraction)
         repaired = snap_ends(repaired, reach_m, changes)
         if len(changes) == before:
             break

@@ -19,6 +19,7 @@ REMEDIES = {
     "scale_m": "--scale M",
     "height_m": "--height M",
     "layers": "--layer NAME=KIND",
+    "close_gaps_m": "--close-gaps M",
     "install_ifc": 'pip install "rssnav[ifc]"',
     "less_memory": "--reflections, --transmissions, --cell-size, --threads or --max-memory",
 }

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from floorplans.importers import FORMATS, read_layers
+from floorplans.importers.defaults import CLOSED_GAP_M
 
 _KNOWN = "; ".join(f"{kind.title} ({', '.join(kind.suffixes)})" for kind in FORMATS)
 
@@ -80,6 +81,16 @@ KeepAxes = Annotated[
     bool,
     typer.Option(
         "--keep-axes", help="Do not turn a building that is drawn at an angle to its own axes."
+    ),
+]
+CloseGaps = Annotated[
+    float | None,
+    typer.Option(
+        metavar="M",
+        min=0.0,
+        max=1000.0,
+        help="Close gaps in the outline up to this width with walls like those beside them.",
+        show_default=f"{CLOSED_GAP_M:g}",
     ),
 ]
 Layer = Annotated[

@@ -1,17 +1,12 @@
 """``rssnav plan import``: create a plan from another program's file."""
 
-from collections import Counter
-from dataclasses import asdict
-from pathlib import Path
-
 import typer
 
 from atomicfiles import atomic_write
-from floorplans.importers import Imported, ImportOptions, import_plan, layers_toml
-from floorplans.repair.walls import Change
-from rssnav.cli.console import print_json, print_table, say
+from floorplans.importers import ImportOptions, UnusablePlanError, import_plan, layers_toml
 from rssnav.cli.import_options import (
     CeilingHeight,
+    CloseGaps,
     ImportedFile,
     KeepAxes,
     Layer,
@@ -34,10 +29,12 @@ from rssnav.cli.import_options import (
     start_of,
 )
 from rssnav.cli.options import Json, check_suffix, examples
-from rssnav.cli.plan_summary import print_summary, summary_of
-
-LISTED_CHANGES = ("closed", "dropped", "raised")
-"""Kinds of changes that are listed one by one; of the others the report gives the number."""
+from rssnav.cli.plan_import_report import (
+    print_import,
+    print_import_json,
+    print_warnings,
+    write_draft,
+)
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -68,6 +65,7 @@ def import_file(
     scale: Scale = None,
     tolerance: WallTolerance = None,
     keep_axes: KeepAxes = False,
+    close_gaps: CloseGaps = None,
     layer: Layer = None,
     layers: Layers = None,
     save_layers: SaveLayers = None,
@@ -77,7 +75,8 @@ def import_file(
     """Create a plan from a drawing, a venue, a robot's map or a building model.
 
     What the file does not state gets a default that the plan's file marks as assumed; the report
-    lists what became of every layer, and the repairs.
+    lists what became of every layer, and the repairs. Of a building that is open, a draft of the
+    plan and a picture of the gaps are written instead.
     """
     check_suffix(output, (".toml",), "--output")
     if save_layers is not None:
@@ -96,65 +95,24 @@ def import_file(
         scale_m=scale,
         tolerance_m=tolerance,
         keep_axes=keep_axes,
+        close_gaps_m=close_gaps,
         layers=layers_of(layer, layers),
     )
     if output.exists() and not force:
         raise FileExistsError(17, "already exists; use --force to overwrite", str(output))
-    imported = import_plan(file, options)
+    try:
+        imported = import_plan(file, options)
+    except UnusablePlanError as error:
+        print_warnings(error.draft)
+        write_draft(error.draft, output, force)
+        raise
     with atomic_write(output) as beside:
         beside.write_text(imported.toml(), encoding="utf-8", newline="\n")
     if save_layers is not None:
         with atomic_write(save_layers) as beside:
             text = layers_toml(options.layers, imported.layers)
             beside.write_text(text, encoding="utf-8", newline="\n")
-    _report(imported, output, as_json)
-
-
-def _report(imported: Imported, output: Path, as_json: bool) -> None:
     if as_json:
-        print_json(
-            {
-                "output": str(output),
-                **summary_of(imported.plan),
-                "origin": asdict(imported.origin),
-                "layers": [asdict(use) for use in imported.layers],
-                "assumed": [asdict(assumption) for assumption in imported.assumed],
-                "changes": [asdict(change) for change in imported.changes],
-                "notes": imported.notes,
-            }
-        )
-        return
-    if imported.layers:
-        rows = [(use.name, use.n_objects, use.became) for use in imported.layers]
-        print_table(("layer", ">objects", "became"), rows)
-        _print_layer_option(imported)
-        print()
-    if imported.assumed:
-        print_table(
-            ("assumed", "value", "why"), [(a.key, a.value, a.why) for a in imported.assumed]
-        )
-        print()
-    _print_changes(imported.changes)
-    for sentence in imported.notes:
-        say(sentence)
-    print_summary(imported.plan)
-    say(f"\nwrote {output}; see it with: rssnav plan show {output}")
-
-
-def _print_layer_option(imported: Imported) -> None:
-    unknown = [use for use in imported.layers if use.is_unknown]
-    if unknown:
-        largest = max(unknown, key=lambda use: use.n_objects)
-        say(f"layers of unknown names are walls with, for example, --layer '{largest.name}=wall'")
-
-
-def _print_changes(changes: tuple[Change, ...]) -> None:
-    """Print the number of changes of each kind, and those that change the building."""
-    if not changes:
-        return
-    counts = Counter(change.kind for change in changes)
-    say("repaired: " + ", ".join(f"{n} {kind}" for kind, n in counts.items()))
-    for change in changes:
-        if change.kind in LISTED_CHANGES:
-            say(f"  {change}")
-    print()
+        print_import_json(imported, output)
+    else:
+        print_import(imported, output)

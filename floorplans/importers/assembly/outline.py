@@ -14,28 +14,64 @@ from shapely.geometry import MultiPoint, Polygon
 
 from floorplans.errors import PlanError
 from floorplans.importers.assembly.outline_gaps import gap_links, link_lengths
+from floorplans.importers.defaults import CLOSED_GAP_M
 from floorplans.repair.geometry import Change
-from floorplans.repair.walls import split_at_junctions
+from floorplans.repair.walls import repair_walls, split_at_junctions
 from floorplans.walls import TOLERANCE_M, Wall, centre_lines
 
-_GAPS_M = (0.0, 0.3, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0)
+_GAPS_M = (0.0, 0.3, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 12.0, 20.0, 35.0, 60.0)
 """Widths up to which gaps in the outline are closed; tried in order until one suffices [m]."""
 _ENOUGH = 0.02
 """Wider gaps are closed only if that encloses this additional fraction of the walls' length."""
+_MOSTLY_OPEN = 0.5
+"""Fraction of the walls' length below which what is enclosed is a room, not the building."""
+_NARROW_M = 0.3
+"""A narrower region is a gap between walls, not a building [m]."""
 _ON_EDGE_M = 1e-5
+
+Link = tuple[tuple[float, float], tuple[float, float]]
+Lines = NDArray[np.object_]
 
 
 @dataclass(frozen=True)
 class Storey:
-    """Walls in and on an outline, and the changes made."""
+    """Walls in and on an outline.
+
+    Attributes
+    ----------
+    outline : shapely.geometry.Polygon
+    walls : tuple of Wall
+    changes : tuple of Change
+    gaps : tuple of Link
+        Where the outline has no wall, because the gap is wider than may be closed [m].
+    enclosed : float
+        Fraction of the walls' length that is in or on the outline.
+    """
 
     outline: Polygon
     walls: tuple[Wall, ...]
-    changes: tuple[Change, ...]
+    changes: tuple[Change, ...] = ()
+    gaps: tuple[Link, ...] = ()
+    enclosed: float = 1.0
 
 
-def find_outline(walls: Sequence[Wall], given: Polygon | None, height_m: float) -> Storey:
+@dataclass(frozen=True)
+class _Region:
+    """What walls and links enclose; the sides that only links close; how much of the walls."""
+
+    polygon: Polygon
+    gaps: tuple[Link, ...]
+    enclosed: float
+
+
+def find_outline(
+    walls: Sequence[Wall], given: Polygon | None, height_m: float, max_gap_m: float | None = None
+) -> Storey:
     """Find the outline that walls enclose; close gaps where necessary, drop walls outside.
+
+    Gaps are closed by the shortest links between free ends of walls and other walls: those up to
+    the least width that encloses the building, where no greater width up to `max_gap_m` encloses
+    another 2 % of the walls' length. A building that is open wider keeps its gaps.
 
     Parameters
     ----------
@@ -45,25 +81,39 @@ def find_outline(walls: Sequence[Wall], given: Polygon | None, height_m: float) 
         What the storey covers according to the file: regions outside it are left out.
     height_m : float
         Of the ceiling; walls on the outline are raised to it [m].
+    max_gap_m : float or None
+        Wider gaps stay open; None is `CLOSED_GAP_M` [m].
 
     Returns
     -------
     Storey
-
-    Raises
-    ------
-    PlanError
-        When the walls enclose no region.
     """
     pieces = split_at_junctions(walls)
-    outline, links = _best_region(pieces, given)
+    limit_m = CLOSED_GAP_M if max_gap_m is None else max_gap_m
+    region = _enclosed_region(centre_lines(pieces), given, limit_m, max_gap_m is not None)
+    short = [gap for gap in region.gaps if dist(*gap) <= limit_m]
     changes = [
-        Change("closed", f"gap of {dist(a, b):.2f} m in the outline closed", a, b) for a, b in links
+        Change("closed", f"gap of {dist(a, b):.2f} m in the outline closed", a, b) for a, b in short
     ]
-    closing = _closing(pieces, links)
-    inside = _inside(split_at_junctions([*pieces, *closing]), outline, changes)
-    raised = _raised(inside, outline, height_m, changes)
-    return Storey(outline, raised, tuple(changes))
+    closing = _closing(pieces, short)
+    inside = _inside(split_at_junctions([*pieces, *closing]), region.polygon, changes)
+    raised = _raised(inside, region.polygon, height_m, changes)
+    gaps = tuple(gap for gap in region.gaps if dist(*gap) > limit_m)
+    return Storey(region.polygon, raised, tuple(changes), gaps, region.enclosed)
+
+
+def outline_of(walls: Sequence[Wall], given: Polygon | None) -> Polygon | None:
+    """Outline that walls enclose without any gap; None if there is none.
+
+    Parameters
+    ----------
+    walls : sequence of Wall
+        In their final positions.
+    given : shapely.geometry.Polygon or None
+        As in `find_outline`.
+    """
+    region = _largest_face(centre_lines(split_at_junctions(walls)), np.empty((0, 2, 2)), given)
+    return None if region is None else _simplified(region)
 
 
 def on_edge(walls: Sequence[Wall], outline: Polygon) -> NDArray[np.bool_]:
@@ -73,36 +123,89 @@ def on_edge(walls: Sequence[Wall], outline: Polygon) -> NDArray[np.bool_]:
     return np.array(shapely.covers(edge, centre_lines(walls)), dtype=np.bool_)
 
 
-Link = tuple[tuple[float, float], tuple[float, float]]
+def _enclosed_region(
+    lines: Lines, given: Polygon | None, limit_m: float, is_strict: bool
+) -> _Region:
+    """Region that gaps up to a limit close, or one with wider gaps where that is no building.
+
+    Under a strict limit a building is open where the default limit would enclose more of it;
+    otherwise only where hardly any of the walls are enclosed, in whatever number of buildings.
+    """
+    widest_m = max(limit_m, CLOSED_GAP_M)
+    links = gap_links(lines, widest_m)
+    found = _best_region(lines, links, given, limit_m)
+    if is_strict and limit_m < CLOSED_GAP_M:
+        wider = _best_region(lines, links, given, CLOSED_GAP_M)
+        if wider and (found is None or wider.enclosed > found.enclosed + _ENOUGH):
+            return wider
+    if found and (found.enclosed > _MOSTLY_OPEN or _is_closed(lines, links, found)):
+        return found
+    wider = _best_region(lines, gap_links(lines, max(_GAPS_M)), given, max(_GAPS_M))
+    if found and not (wider and wider.enclosed > _MOSTLY_OPEN):
+        return found
+    return wider or _hull(lines)
 
 
-def _best_region(pieces: Sequence[Wall], given: Polygon | None) -> tuple[Polygon, list[Link]]:
-    """Region with most of the walls, and the links that close it, for the least width of gaps."""
-    lines = centre_lines(pieces)
+def _best_region(
+    lines: Lines, links: NDArray[np.float64], given: Polygon | None, limit_m: float
+) -> _Region | None:
+    """Region with most of the walls for the least width of gaps; None if there is none."""
     total_m = float(shapely.length(lines).sum())
-    best: tuple[float, Polygon, list[Link]] | None = None
-    links = gap_links(lines, max(_GAPS_M))
     lengths_m = link_lengths(links)
-    for gap_m in _GAPS_M:
-        region = _region(lines, links[lengths_m <= gap_m], given)
-        if region is None:
+    best: _Region | None = None
+    for gap_m in [*(width for width in _GAPS_M if width < limit_m), limit_m]:
+        polygon = _largest_face(lines, links[lengths_m <= gap_m], given)
+        if polygon is None:
             continue
-        inside = _length_inside(lines, region) / total_m
-        if best is None or inside > best[0] + _ENOUGH:
-            best = (inside, region, _open_sections(region, lines))
-        if best[0] > 1 - _ENOUGH:
+        enclosed = _length_inside(lines, polygon) / total_m
+        if best is None or enclosed > best.enclosed + _ENOUGH:
+            gaps = tuple(_open_sections(polygon, lines))
+            best = _Region(_simplified(polygon), gaps, enclosed)
+        if best.enclosed > 1 - _ENOUGH:
             break
-    if best is None:
+    return best
+
+
+def _simplified(polygon: Polygon) -> Polygon:
+    simple = polygon.simplify(TOLERANCE_M / 10)
+    assert isinstance(simple, Polygon)
+    return simple
+
+
+def _is_closed(lines: Lines, links: NDArray[np.float64], region: _Region) -> bool:
+    """Whether most of the walls outside a region are part of other closed buildings."""
+    widths_m = [dist(*gap) for gap in region.gaps]
+    used = links[link_lengths(links) <= max(widths_m, default=0.0)]
+    faces = _faces(lines, used)
+    wide = shapely.union_all(faces).buffer(_ON_EDGE_M)
+    shapely.prepare(wide)
+    lengths_m = shapely.length(lines)
+    return float(lengths_m[shapely.covers(wide, lines)].sum()) > _MOSTLY_OPEN * lengths_m.sum()
+
+
+def _hull(lines: Lines) -> _Region:
+    """Smallest convex region around walls that enclose nothing."""
+    hull = shapely.MultiLineString(list(lines)).convex_hull
+    if not isinstance(hull, Polygon):
         raise PlanError(
-            "the walls enclose no region, even with gaps of "
-            f"{_GAPS_M[-1]:g} m closed; check which layers hold the walls, and the unit"
+            "the walls enclose no region, because they all lie on one line; check which layers "
+            "hold the walls, and the unit"
         )
-    outline = best[1].simplify(TOLERANCE_M / 10)
-    assert isinstance(outline, Polygon)
-    return outline, best[2]
+    ends = shapely.get_coordinates(lines)
+    sides = (
+        ends[np.array(shapely.dwithin(shapely.linestrings(side), shapely.points(ends), _ON_EDGE_M))]
+        for side in pairwise(hull.exterior.coords)
+    )
+    starts = np.array(hull.exterior.coords)[:-1]
+    ring = [
+        point
+        for start, on_side in zip(starts, sides, strict=True)
+        for point in on_side[np.argsort(np.hypot(*(on_side - start).T))].tolist()
+    ]
+    return _Region(hull, tuple(_open_sections(Polygon(ring), lines)), 1.0)
 
 
-def _open_sections(region: Polygon, lines: NDArray[np.object_]) -> list[Link]:
+def _open_sections(region: Polygon, lines: Lines) -> list[Link]:
     """Sides of a region without walls, split wherever walls or links meet."""
     sides = [
         ((float(a[0]), float(a[1])), (float(b[0]), float(b[1])))
@@ -115,26 +218,32 @@ def _open_sections(region: Polygon, lines: NDArray[np.object_]) -> list[Link]:
     return [side for i, side in enumerate(sides) if i not in covered]
 
 
-def _region(
-    lines: NDArray[np.object_], links: NDArray[np.float64], given: Polygon | None
-) -> Polygon | None:
-    """Largest connected region that lines and links enclose; None if there is none."""
+def _faces(lines: Lines, links: NDArray[np.float64]) -> Lines:
+    """Smallest regions that lines and links enclose."""
     closing = np.array(shapely.linestrings(links), dtype=np.object_)
     noded = shapely.union_all(np.concatenate([lines, closing]))
-    faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
+    return np.array(shapely.get_parts(shapely.polygonize(shapely.get_parts(noded))), dtype=object)
+
+
+def _largest_face(
+    lines: Lines, links: NDArray[np.float64], given: Polygon | None
+) -> Polygon | None:
+    """Largest connected region that lines and links enclose; None if there is none."""
+    faces = _faces(lines, links)
     if given is not None:
         covered = shapely.area(shapely.intersection(faces, given))
         faces = faces[covered > 0.5 * shapely.area(faces)]
     parts = shapely.get_parts(shapely.union_all(faces))
-    polygons = [part for part in parts if isinstance(part, Polygon) and part.area > 0]
-    if not polygons:
+    polygons = [part for part in parts if isinstance(part, Polygon)]
+    wide = [part for part in polygons if not part.buffer(-_NARROW_M / 2).is_empty]
+    if not wide:
         return None
-    largest = max(polygons, key=lambda polygon: polygon.area)
+    largest = max(wide, key=lambda polygon: polygon.area)
     holes = list(largest.interiors) if given is not None else []
     return Polygon(largest.exterior, holes)
 
 
-def _length_inside(lines: NDArray[np.object_], region: Polygon) -> float:
+def _length_inside(lines: Lines, region: Polygon) -> float:
     """Length of the pieces in a region or on its edge [m]."""
     wide = region.buffer(_ON_EDGE_M)
     shapely.prepare(wide)
@@ -179,3 +288,38 @@ def _raised(
         else:
             raised.append(wall)
     return tuple(raised)
+
+
+def settled(
+    storey: Storey, given: Polygon | None, height_m: float, reach_m: float
+) -> Storey | None:
+    """Make walls meet exactly, and derive the outline from where they then are.
+
+    Parameters
+    ----------
+    storey : Storey
+    given, height_m
+        As in `find_outline`.
+    reach_m : float
+        How far walls are moved [m].
+
+    Returns
+    -------
+    Storey or None
+        None where the outline loses more than `_ENOUGH` of its area; a storey with gaps keeps its
+        outline.
+    """
+    walls = repair_walls(storey.walls, reach_m, 0.0, 0.0).walls
+    if storey.gaps:
+        return replace(storey, walls=walls)
+    outline = outline_of(walls, given)
+    if outline is None or outline.area < (1 - _ENOUGH) * storey.outline.area:
+        return None
+    changes = list(storey.changes)
+    inside = _inside(walls, outline, changes)
+    return replace(
+        storey,
+        outline=outline,
+        walls=_raised(inside, outline, height_m, changes),
+        changes=tuple(changes),
+    )

@@ -73,7 +73,7 @@ def curves_of(entity: DXFGraphic, tolerance: float) -> list[Curve]:
         curves = list(_READERS[entity.dxftype()](entity, tolerance))
     except (ArithmeticError, AttributeError, IndexError, TypeError, ValueError):
         return []  # a damaged entity; it still counts as an object of its layer
-    return [curve for curve in curves if len(curve.points) > 1 and _finite(curve)]
+    return [curve for curve in curves if len(curve.points) > 1 and is_finite(curve)]
 
 
 def moved_curve(curve: Curve, matrix: Matrix44) -> Curve:
@@ -97,8 +97,11 @@ def chord_step_deg(radius: float, tolerance: float) -> float:
     return CHORD_STEPS[-1]
 
 
-def _finite(curve: Curve) -> bool:
-    return all(isfinite(x) and isfinite(y) and max(abs(x), abs(y)) < _FAR for x, y in curve.points)
+def is_finite(curve: Curve) -> bool:
+    """Whether all points of a curve, also those of its swing, are where a drawing can be."""
+    swing = curve.swing
+    points = curve.points if swing is None else (*curve.points, swing.hinge, *swing.ends)
+    return all(isfinite(x) and isfinite(y) and max(abs(x), abs(y)) < _FAR for x, y in points)
 
 
 def _flat(point: Any) -> Point:

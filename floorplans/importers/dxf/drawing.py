@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from floorplans.errors import PlanError
-from floorplans.importers.dxf.curves import CURVE_TYPES, Curve, curves_of, moved_curve
+from floorplans.importers.dxf.curves import CURVE_TYPES, Curve, curves_of, is_finite, moved_curve
 from floorplans.importers.layer_names import Kind, Meaning, meaning_of
 
 if TYPE_CHECKING:
@@ -270,8 +270,10 @@ class _Collector:
         x, y, _ = matrix.ux
         usable = isfinite(hypot(x, y)) and hypot(x, y) > 0
         axis = (float(x), float(y)) if usable else (1.0, 0.0)
-        curves = tuple(moved_curve(curve, matrix) for curve in self._block(insert, depth))
-        return Symbol(kind, named or kind == "window", layer, axis, curves)
+        curves = (moved_curve(curve, matrix) for curve in self._block(insert, depth))
+        return Symbol(
+            kind, named or kind == "window", layer, axis, tuple(filter(is_finite, curves))
+        )
 
     def _block(self, insert: Any, depth: int) -> tuple[Curve, ...]:
         """Lines of an insert's block and its nested blocks, in the block's own coordinates."""

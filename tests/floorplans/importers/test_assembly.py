@@ -25,6 +25,7 @@ from floorplans.importers import (
     Origin,
     RawOpening,
     RawWall,
+    UnusablePlanError,
     assemble,
     import_plan,
 )
@@ -105,11 +106,67 @@ def test_wrong_options_are_reported(options: dict[str, object], said: str):
         made(HALL, **options)
 
 
-def test_walls_that_close_nothing_are_rejected():
-    with pytest.raises(PlanError, match="close no region"):
-        made(Draft("x", (RawWall((0, 0), (30, 0)), RawWall((0, 20), (30, 20)))))
+def test_walls_that_enclose_nothing_are_a_draft_with_gaps():
+    two = Draft("x", (RawWall((0, 0), (30, 0)), RawWall((0, 20), (30, 20))))
+    with pytest.raises(UnusablePlanError, match=r"open: 20\.00 m from .* up to 20\.1 m") as caught:
+        made(two)
+    draft = caught.value.draft
+    assert {frozenset(gap) for gap in draft.gaps} == {
+        frozenset({(0, 0), (0, 20)}), frozenset({(30, 0), (30, 20)})
+    }  # fmt: skip
+    assert len(draft.plan.walls) == 2
+    with pytest.raises(PlanError, match="the outline is open"):
+        floorplans.loads(draft.toml())
+    assert draft.toml().startswith("# DRAFT, not traceable")
+    assert made(two, close_gaps_m=20.1).plan.outline.area == pytest.approx(600)
     with pytest.raises(PlanError, match="no walls"):
         made(Draft("x", ()))
+    with pytest.raises(PlanError, match="all lie on one line"):
+        made(Draft("x", (RawWall((0, 0), (30, 0)),)))
+
+
+def test_gaps_wider_than_asked_for_stay_open_even_around_a_closed_room():
+    room = ring(1, 1, 3, 3, 0.1)
+    walls = [*ring(0, 0, 12, 8)[1:], RawWall((0, 0), (6, 0)), RawWall((9, 0), (12, 0)), *room]
+    hall = Draft("x", tuple(walls))
+    assert made(hall).plan.outline.area == pytest.approx(96)
+    assert made(hall, close_gaps_m=3.0).plan.outline.area == pytest.approx(96)
+    with pytest.raises(UnusablePlanError, match=r"3\.00 m from \(6, 0\) to \(9, 0\)"):
+        made(hall, close_gaps_m=2.0)
+
+
+def test_a_hall_open_beyond_the_limit_is_not_taken_for_the_room_in_it():
+    room = ring(1, 1, 3, 3, 0.1)
+    walls = [*ring(0, 0, 30, 20)[1:], RawWall((0, 0), (8, 0)), RawWall((22, 0), (30, 0)), *room]
+    with pytest.raises(UnusablePlanError, match=r"14\.00 m from \(8, 0\) to \(22, 0\)"):
+        made(Draft("x", tuple(walls)))
+
+
+def test_the_largest_of_several_buildings_is_taken_with_a_warning():
+    small = [wall for k in range(4) for wall in ring(30 + 20 * k, 0, 39 + 20 * k, 8)]
+    result = made(Draft("x", (*ring(0, 0, 12, 8), *small)))
+    assert result.plan.outline.area == pytest.approx(96)
+    assert any("77 % of the walls, about 136 m" in sentence for sentence in result.warnings)
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 100_000))
+def test_nearly_collinear_walls_and_gaps_make_a_plan_that_passes_its_checks(seed: int):
+    """Sides of a hall in pieces with gaps, each piece off its line by 1e-7 m to 1 cm."""
+    rng = np.random.default_rng(seed)
+    corners = np.array([(0, 0), (20, 0), (20, 12), (0, 12), (0, 0)], dtype=float)
+    walls: list[RawWall] = []
+    for a, b in pairwise(corners):
+        along = (b - a) / np.hypot(*(b - a))
+        stops = np.linspace(0, np.hypot(*(b - a)), int(rng.integers(2, 6)))
+        for low, high in pairwise(stops):
+            off = along[::-1] * (1, -1) * 10.0 ** rng.uniform(-7, -2) * rng.choice([-1, 1])
+            gap_m = float(rng.choice([0.0, 0.02, 0.4, 1.5]))
+            start, end = a + low * along + off, a + max(high - gap_m, low + 0.3) * along + off
+            thickness_m = float(rng.choice([0.1, 0.2, 0.22]))
+            walls.append(RawWall(tuple(start), tuple(end), thickness_m, "brick"))  # type: ignore[arg-type]
+    plan = made(Draft("hall", tuple(walls))).plan
+    assert plan.outline.area == pytest.approx(240, rel=0.03)
 
 
 def test_a_building_of_kilometres_is_rejected():

@@ -391,7 +391,7 @@ def test_a_drawing_of_text_is_rejected(tmp_path: Path):
 def test_walls_that_close_nothing_are_rejected(tmp_path: Path):
     doc = draw.new()
     draw.add_lines(doc.modelspace(), [((0, 0), (30, 0)), ((0, 20), (30, 20))], "wall")
-    assert "close no region" in refusal(doc, tmp_path)
+    assert "the building is open: 20.00 m" in refusal(doc, tmp_path)
 
 
 def test_another_kind_of_file_is_rejected(tmp_path: Path):
@@ -435,6 +435,17 @@ def test_a_block_within_itself_does_no_harm(tmp_path: Path):
     block.add_blockref("SELF", (1, 1))
     doc.modelspace().add_blockref("SELF", (0, 0), dxfattribs={"layer": "A-WALL"})
     assert_is_the_flat(imported(doc, tmp_path).plan)
+
+
+@pytest.mark.parametrize("scale", [1e308, 1e200, 0.0])
+def test_door_blocks_scaled_out_of_any_drawing_are_left_out(scale: float, tmp_path: Path):
+    doc = draw.flat_of_bodies()
+    block = doc.blocks.new("DOOR")
+    block.add_arc((0, 0), 900, 0, 90)
+    block.add_line((0, 0), (0, 900))
+    attributes = {"layer": "A-DOOR", "xscale": scale, "yscale": scale}
+    doc.modelspace().add_blockref("DOOR", (5000, 2000), dxfattribs=attributes)
+    assert import_plan(draw.save(doc, tmp_path)).plan.outline.area == pytest.approx(7.7 * 5.7)
 
 
 def test_a_truncated_file_is_read_as_far_as_it_goes_or_rejected(tmp_path: Path):

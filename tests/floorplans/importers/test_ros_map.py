@@ -11,7 +11,7 @@ from PIL import Image
 from shapely.geometry import LineString, Point
 
 from floorplans import FloorPlan, PlanError
-from floorplans.importers import ImportOptions, import_plan
+from floorplans.importers import ImportOptions, UnusablePlanError, import_plan
 from floorplans.importers.ros_map.occupancy_grid import read_grid
 from floorplans.importers.ros_map.thinning import polylines, thinned
 from floorplans.importers.ros_map.vectorise import walls_of_picture
@@ -87,7 +87,8 @@ def test_room_with_a_gap_and_a_pillar(angle: float, tmp_path) -> None:
         LineString([partitions[1].start, partitions[1].end])
     )
     assert gap == pytest.approx(1.0, abs=1.5 * PIXEL_M)
-    assert any("99 % of the pixels lie within 0.0" in note for note in imported.notes)
+    assert any(note.startswith("of all occupied pixels, 100.0 % lie") for note in imported.notes)
+    assert not imported.warnings
 
 
 def test_coordinates_are_those_of_the_map(tmp_path) -> None:
@@ -262,3 +263,109 @@ def test_thinning_keeps_what_is_connected_and_is_one_pixel_wide() -> None:
 
 def test_an_empty_picture_has_no_walls() -> None:
     assert walls_of_picture(np.zeros((20, 20), dtype=bool), 1.5) == []
+
+
+def hall(n_x=280, n_y=240):
+    """Return walls and free space of the room of 10 m x 7 m, each 0.1 m thick."""
+    walls = ROOM.exterior.buffer(0.05, join_style="mitre")
+    return walls, ROOM, (n_x, n_y)
+
+
+@pytest.mark.parametrize("width_m", [1.5, 4.0, 8.0])
+def test_the_border_of_known_space_closes_a_bay_door_and_the_report_lists_it(
+    width_m: float, tmp_path
+) -> None:
+    walls, free, size = hall()
+    racks = shapely.union_all([shapely.box(x, 1.6, x + 0.5, 4) for x in (2.5, 5.5, 8.5)])
+    door = shapely.box(6 - width_m / 2, 0, 6 + width_m / 2, 2)
+    area = walls.difference(door) | racks.boundary.buffer(0.04)
+    imported = import_plan(write_map(tmp_path, drawn(area, free.difference(racks), *size)))
+    assert imported.plan.outline.area == pytest.approx(70.0, rel=0.01)
+    (closed,) = (change for change in imported.changes if change.kind == "closed")
+    assert np.hypot(*np.subtract(closed.at, closed.to)) == pytest.approx(width_m, abs=0.11)
+    assert {round(closed.at[1], 1), round(closed.to[1], 1)} == {0.0}
+    told = any("shows no wall on" in sentence for sentence in imported.warnings)
+    assert told == (width_m > 0.1 * 34)
+
+
+def test_openings_wider_than_asked_for_stay_open(tmp_path) -> None:
+    walls, free, size = hall()
+    path = write_map(tmp_path, drawn(walls.difference(shapely.box(4, 0, 8, 2)), free, *size))
+    with pytest.raises(UnusablePlanError, match=r"open: 3\.9\d m|open: 4\.0\d m"):
+        import_plan(path, ImportOptions(close_gaps_m=2.0))
+
+
+def test_free_space_is_inside_however_ragged_its_border_is(tmp_path) -> None:
+    """A room half mapped: nothing but free space on its right side, in lobes."""
+    lobes = [Point(8, y).buffer(r) for y, r in ((2.5, 1.2), (4.5, 1.8), (6.5, 1.1))]
+    free = shapely.union_all([shapely.box(1, 1, 8, 8), *lobes])
+    walls = shapely.LineString([(8, 1), (1, 1), (1, 8), (8, 8)]).buffer(0.06, cap_style="flat")
+    values = drawn(walls, free)
+    imported = import_plan(write_map(tmp_path, values))
+    y, x = np.nonzero(values[::-1] == 254)
+    shift = (imported.origin.x + 1.0, imported.origin.y + 2.0)  # the map's origin is (-1, -2)
+    inside = shapely.contains_xy(
+        imported.plan.outline, (x + 0.5) * PIXEL_M - shift[0], (y + 0.5) * PIXEL_M - shift[1]
+    )
+    assert inside.mean() > 0.98
+    assert any("shows no wall on" in sentence for sentence in imported.warnings)
+
+
+@pytest.mark.parametrize("angle", [0, 17])
+def test_thin_walls_in_dashes_are_walls(angle: float, tmp_path) -> None:
+    walls = shapely.union_all([shapely.buffer(line, 0.03) for line in LINES])
+
+    def turned(area):
+        return shapely.affinity.translate(
+            shapely.affinity.rotate(area, angle, origin=(6, 4.5)), 1.0, 1.0
+        )
+
+    values = drawn(turned(walls), turned(ROOM))
+    y, x = np.nonzero(values == 0)
+    along = (np.cos(np.radians(angle)) * x + np.sin(np.radians(angle)) * -y) * PIXEL_M
+    across = (np.sin(np.radians(angle)) * -x + np.cos(np.radians(angle)) * -y) * PIXEL_M
+    gone = ((along % 1.0) < 0.35) | ((across % 1.0) < 0.35)  # dashes of 0.65 m
+    values[y[gone], x[gone]] = 254
+    plan = import_plan(write_map(tmp_path, values)).plan
+    assert plan.outline.area == pytest.approx(70.0, rel=0.03)
+    long = sorted((w.length_m for w in plan.walls if w.length_m > 0.6), reverse=True)
+    assert sum(long) == pytest.approx(40.0, rel=0.05)
+    assert len(long) <= 10
+
+
+def test_pillars_beside_a_wall_stay_pillars_and_round_ones_are_round(tmp_path) -> None:
+    walls, free, size = hall()
+    pillars = [
+        shapely.box(1.2, 3, 1.7, 3.5), Point(4, 4).buffer(0.15), Point(6, 4).buffer(0.4)
+    ]  # fmt: skip
+    hidden = shapely.union_all([pillar.buffer(-0.06) for pillar in pillars[1:]])
+    solid = shapely.union_all([walls, pillars[0], *(p.boundary.buffer(0.03) for p in pillars[1:])])
+    plan = import_plan(write_map(tmp_path, drawn(solid, free.difference(hidden), *size))).plan
+    found = sorted(rings(plan), key=lambda ring: ring.centroid.x)
+    assert len(found) == 3
+    for ring, pillar in zip(found, pillars, strict=True):
+        placed = shapely.affinity.translate(pillar, -1, -1)
+        assert ring.hausdorff_distance(placed) <= 1.5 * PIXEL_M + 0.03
+        assert ring.area == pytest.approx(pillar.buffer(0.03).area, rel=0.3)
+
+
+NOISE = {
+    "thirds": (0.2, 0.4, 0.4),
+    "specks on white": (0.01, 0.0, 0.99),
+    "specks on grey": (0.03, 0.97, 0.0),
+}
+
+
+@pytest.mark.parametrize("name", NOISE)
+def test_hopeless_maps_are_refused_with_the_reason(name: str, tmp_path) -> None:
+    values = np.random.default_rng(1).choice([0, 205, 254], size=(200, 200), p=NOISE[name])
+    with pytest.raises(PlanError, match=r"noise|no line of pixels"):
+        import_plan(write_map(tmp_path, values.astype(np.uint8)))
+
+
+def test_free_space_that_no_wall_separates_is_outside_and_counted(tmp_path) -> None:
+    walls, free, size = hall()
+    other = shapely.box(1.5, 9, 5.5, 11)
+    imported = import_plan(write_map(tmp_path, drawn(walls, free | other, *size)))
+    (sentence,) = imported.warnings
+    assert sentence.startswith("10 % of the map's free pixels (8 m² of 7")

@@ -7,8 +7,10 @@ import shlex
 from pathlib import Path
 
 import ezdxf
+import numpy as np
 import pytest
 from cli_plans import ESCAPE, done, fault, run
+from PIL import Image
 
 import floorplans
 
@@ -116,6 +118,50 @@ def test_a_file_that_is_there_is_replaced_only_by_force(drawing: Path, tmp_path:
     assert output.read_text() == "mine"
     done("plan", "import", drawing, "-o", output, "--force")
     assert output.read_text() != "mine"
+
+
+@pytest.fixture
+def open_drawing(tmp_path: Path) -> Path:
+    """A hall of 30 m x 20 m whose lower side is open from x = 8 to 22."""
+    doc = ezdxf.new()
+    doc.header["$INSUNITS"] = 6
+    corners = [(8, 0), (0, 0), (0, 20), (30, 20), (30, 0), (22, 0)]
+    doc.modelspace().add_lwpolyline(corners, dxfattribs={"layer": "WALLS"})
+    path = tmp_path / "hall.dxf"
+    doc.saveas(path)
+    return path
+
+
+def test_an_open_building_is_a_draft_with_a_picture_of_its_gaps(open_drawing: Path, tmp_path: Path):
+    output, draft = tmp_path / "hall.toml", tmp_path / "hall.draft.toml"
+    line = fault("plan", "import", open_drawing, "-o", output)
+    assert "the building is open: 14.00 m from (8, 0) to (22, 0)" in line
+    assert line.endswith("close gaps of up to 14.1 m; use --close-gaps M")
+    assert not output.exists()
+    assert "the outline is open from" in fault("plan", "show", draft, "-o", tmp_path / "a.png")
+    picture = np.asarray(Image.open(tmp_path / "hall.draft.png").convert("RGB")).astype(int)
+    assert ((picture[..., 0] > 200) & (picture[..., 1:].max(axis=-1) < 60)).sum() > 200
+    draft.write_text("corrected by hand")
+    fault("plan", "import", open_drawing, "-o", output)
+    assert draft.read_text() == "corrected by hand"
+    fault("plan", "import", open_drawing, "-o", output, "--force")
+    assert draft.read_text().startswith("# DRAFT")
+
+
+def test_wider_gaps_are_closed_on_request(open_drawing: Path, tmp_path: Path):
+    output = tmp_path / "hall.toml"
+    text = done("plan", "import", open_drawing, "-o", output, "--close-gaps", 14.1)
+    assert "gap of 14.00 m in the outline closed" in text
+    assert floorplans.load(output).outline.area == pytest.approx(600)
+
+
+def test_a_draft_is_a_plan_once_its_gaps_have_walls(open_drawing: Path, tmp_path: Path):
+    output, draft = tmp_path / "hall.toml", tmp_path / "hall.draft.toml"
+    fault("plan", "import", open_drawing, "-o", output)
+    wall = '[[walls]]\npoints = [[8, 0], [21.97, 0]]\nmaterial = "brick"\nthickness_m = 0.2\n'
+    draft.write_text(draft.read_text() + wall)
+    done("plan", "check", draft, "--fix", "-o", output)
+    assert floorplans.load(output).outline.area == pytest.approx(600, rel=0.01)
 
 
 @pytest.mark.parametrize(
