@@ -24,6 +24,7 @@ from floorplans.importers.draft import (
 from floorplans.importers.formats import FORMATS, import_plan, read_draft
 from floorplans.importers.imported import DraftPlan, Imported, ImportRecord, UnusablePlanError
 from floorplans.importers.layer_file import layers_toml, read_layers
+from floorplans.importers.page import import_page
 
 __all__ = [
     "FORMATS",
@@ -39,6 +40,7 @@ __all__ = [
     "RawWall",
     "UnusablePlanError",
     "assemble",
+    "import_page",
     "import_plan",
     "layers_toml",
     "read_draft",

@@ -223,8 +223,8 @@ class Draft:
         Further information for the user, one sentence each.
     warnings : tuple of str
         What the user should look at, one sentence each.
-    closed : tuple of ((float, float), (float, float))
-        Openings in the outline that the reader has closed, from (x, y) to (x, y) [m].
+    closed : tuple of shapely.geometry.LineString
+        Sections of the outline where the file has no wall and the reader has added walls [m].
     known : KnownPixels or None
         Of a robot's map.
     original : Original or None
@@ -245,6 +245,6 @@ class Draft:
     assumed: tuple[Assumption, ...] = ()
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
-    closed: tuple[tuple[Point, Point], ...] = ()
+    closed: tuple[LineString, ...] = ()
     known: KnownPixels | None = None
     original: Original | None = None

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import dist, radians, sin
 
+import numpy as np
 import shapely
 
 from floorplans.repair.geometry import (
@@ -73,9 +74,8 @@ def merge_lines(
 
 def _groups(walls: Sequence[Wall], reach_m: float, sideways_fraction: float) -> Iterator[list[int]]:
     """Indices of the walls of each line, the longest wall first."""
-    lines = centre_lines(walls)
-    tree = shapely.STRtree(lines)
     thickest = max((wall.thickness_m for wall in walls), default=0.0)
+    near = _nearly_parallel(walls, reach_m + sideways_fraction * thickest)
     free = set(range(len(walls)))
     for leader in sorted(free, key=lambda i: (-walls[i].length_m, i)):
         if leader not in free:
@@ -83,10 +83,7 @@ def _groups(walls: Sequence[Wall], reach_m: float, sideways_fraction: float) -> 
         free.remove(leader)
         group, todo = [leader], [leader]
         while todo:
-            near = tree.query(
-                lines[todo.pop()], "dwithin", distance=reach_m + sideways_fraction * thickest
-            )
-            members = [i for i in sorted(near.tolist()) if i in free]
+            members = [i for i in near[todo.pop()] if i in free]
             for i in members:
                 sideways_m = reach_m + sideways_fraction * min(
                     walls[leader].thickness_m, walls[i].thickness_m
@@ -97,6 +94,20 @@ def _groups(walls: Sequence[Wall], reach_m: float, sideways_fraction: float) -> 
                     group.append(i)
                     todo.append(i)
         yield group
+
+
+def _nearly_parallel(walls: Sequence[Wall], distance_m: float) -> list[list[int]]:
+    """Walls within a distance of each wall that two lines of one group may have, in order."""
+    lines = centre_lines(walls)
+    first, second = shapely.STRtree(lines).query(lines, "dwithin", distance=distance_m)
+    along = np.array([direction(wall) for wall in walls]).reshape(-1, 2)
+    sines = along[first, 0] * along[second, 1] - along[first, 1] * along[second, 0]
+    kept = (np.abs(sines) <= 2 * _MAX_SINE) & (first != second)
+    near: list[list[int]] = [[] for _ in walls]
+    order = np.lexsort((second[kept], first[kept]))
+    for i, j in zip(first[kept][order].tolist(), second[kept][order].tolist(), strict=True):
+        near[i].append(j)
+    return near
 
 
 def _in_line(

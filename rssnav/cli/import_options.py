@@ -107,6 +107,14 @@ SaveLayers = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Write --layers and --layer to this .toml file."),
 ]
+ReportPage = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Write an .html page that shows the plan over the drawing, and what was left out, "
+        "assumed and closed.",
+    ),
+]
 Replace = Annotated[bool, typer.Option("--force", help="Replace whatever is at FILE.")]
 
 

@@ -15,6 +15,7 @@ from rssnav.cli.import_options import (
     Name,
     Output,
     Replace,
+    ReportPage,
     SaveLayers,
     Scale,
     SlabMaterial,
@@ -34,6 +35,7 @@ from rssnav.cli.plan_import_report import (
     print_import_json,
     print_warnings,
     write_draft,
+    write_page,
 )
 
 
@@ -69,6 +71,7 @@ def import_file(
     layer: Layer = None,
     layers: Layers = None,
     save_layers: SaveLayers = None,
+    report: ReportPage = None,
     force: Replace = False,
     as_json: Json = False,
 ) -> None:
@@ -81,6 +84,7 @@ def import_file(
     check_suffix(output, (".toml",), "--output")
     if save_layers is not None:
         check_suffix(save_layers, (".toml",), "--save-layers")
+    check_suffix(report, (".html",), "--report")
     options = ImportOptions(
         name=name,
         height_m=height,
@@ -105,6 +109,7 @@ def import_file(
     except UnusablePlanError as error:
         print_warnings(error.draft)
         write_draft(error.draft, output, force)
+        write_page(error.draft, report)
         raise
     with atomic_write(output) as beside:
         beside.write_text(imported.toml(), encoding="utf-8", newline="\n")
@@ -112,6 +117,7 @@ def import_file(
         with atomic_write(save_layers) as beside:
             text = layers_toml(options.layers, imported.layers)
             beside.write_text(text, encoding="utf-8", newline="\n")
+    write_page(imported, report)
     if as_json:
         print_import_json(imported, output)
     else:

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from atomicfiles import atomic_write
-from floorplans.importers import DraftPlan, Imported
+from floorplans.importers import DraftPlan, Imported, ImportRecord, import_page
 from floorplans.repair.walls import REACH_M, Change
 from rssnav.cli.console import note, print_json, print_table, say
 from rssnav.cli.failures import print_error
@@ -52,7 +52,7 @@ def print_import(imported: Imported, output: Path) -> None:
     say(f"\nwrote {output}; see it with: rssnav plan show {output}")
 
 
-def print_warnings(imported: Imported | DraftPlan) -> None:
+def print_warnings(imported: ImportRecord) -> None:
     """Write what the user should look at to standard error."""
     for sentence in imported.warnings:
         print_error(f"warning: {sentence}")
@@ -104,3 +104,12 @@ def write_draft(draft: DraftPlan, output: Path, force: bool) -> None:
         f"correct the draft, then: rssnav plan check {file} --fix -o {output} (--fix makes walls "
         f"meet that miss each other by up to {REACH_M:g} m; it closes no gaps)"
     )
+
+
+def write_page(record: ImportRecord, path: Path | None) -> None:
+    """Write the page of --report, if asked for."""
+    if path is None:
+        return
+    with atomic_write(path) as beside:
+        beside.write_text(import_page(record), encoding="utf-8", newline="\n")
+    note(f"wrote {path}, which shows the plan over the drawing; open it in a browser")

@@ -22,6 +22,8 @@ THICKNESS_FRACTION = 0.3
 
 _SETTLING_M = (10 * TOLERANCE_M, 1e-3, 1e-2)
 """How far walls are moved to meet once the gaps in the outline are closed; tried in order [m]."""
+_DETOUR = 1.3
+"""Ratio of length to distance up to which a section of the outline is an opening."""
 _ORDER = {"door": 0, "passage": 1, "window": 2}
 
 
@@ -38,6 +40,8 @@ class Building:
     origin : Origin
     gaps : tuple of Link
         Where the outline has no wall [m].
+    closed_m : float
+        Length of the outline where the file has no wall [m].
     enclosed : float
         Fraction of the drawn walls' length that is in or on the outline.
     """
@@ -47,6 +51,7 @@ class Building:
     changes: tuple[Change, ...]
     origin: Origin
     gaps: tuple[Link, ...]
+    closed_m: float
     enclosed: float
 
 
@@ -75,18 +80,31 @@ def buildings(
         storey = settled(found, draft.outline, height_m, settling_m)
         if storey is not None:
             changes = (*repaired.changes, *storey.changes, *_closed_by_reader(draft))
+            closed_m = sum(line.length for line in draft.closed) + sum(
+                dist(c.at, c.to) for c in storey.changes if c.kind == "closed" and c.to
+            )
             storey = replace(storey, changes=changes)
-            yield _with_openings(storey, openings, draft.origin)
+            yield _with_openings(storey, openings, draft.origin, closed_m)
 
 
 def _closed_by_reader(draft: Draft) -> Iterator[Change]:
-    for start, end in draft.closed:
-        text = f"opening of {dist(start, end):.2f} m where known space ends, closed with walls"
-        yield Change("closed", text, start, end)
+    """Yield a change for each section of the outline that the reader has closed."""
+    for line in draft.closed:
+        start, end = _point(line.coords[0]), _point(line.coords[-1])
+        if line.length <= _DETOUR * dist(start, end):
+            text = f"opening of {line.length:.2f} m where known space ends, closed with walls"
+            yield Change("closed", text, start, end)
+        else:
+            text = f"border of known space without a wall, {line.length:.2f} m, closed with walls"
+            yield Change("closed", text, start)
+
+
+def _point(xy: Sequence[float]) -> Point:
+    return (float(xy[0]), float(xy[1]))
 
 
 def _with_openings(
-    storey: Storey, openings: Sequence[RawOpening], origin: Origin | None
+    storey: Storey, openings: Sequence[RawOpening], origin: Origin | None, closed_m: float
 ) -> Building:
     """Attach openings, in the plan's coordinates."""
     if origin is None:
@@ -95,7 +113,7 @@ def _with_openings(
         storey, openings = _moved(storey, openings, -x, -y)
     walls, dropped = attach_openings(storey.walls, openings, storey.outline)
     changes = (*storey.changes, *dropped)
-    return Building(storey.outline, walls, changes, origin, storey.gaps, storey.enclosed)
+    return Building(storey.outline, walls, changes, origin, storey.gaps, closed_m, storey.enclosed)
 
 
 def _moved(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import dist
 
 import numpy as np
 import shapely
@@ -89,14 +88,13 @@ def _warnings(
         )
     if in_no_wall > MUCH:
         yield f"{100 * in_no_wall:.0f} % of the map's occupied pixels are in no wall of the plan"
-    closed = [change for change in building.changes if change.kind == "closed" and change.to]
-    closed_m = sum(dist(change.at, change.to) for change in closed if change.to)
     edge_m = building.outline.length
-    if closed_m > _MANY_CLOSURES * edge_m:
+    n_closed = sum(change.kind == "closed" for change in building.changes)
+    if building.closed_m > _MANY_CLOSURES * edge_m:
         yield (
-            f"the map shows no wall on {100 * closed_m / edge_m:.0f} % of the outline "
-            f"({closed_m:.3g} m of {edge_m:.3g} m, {len(closed)} openings): doors that stood open, "
-            "glass, or a map that is not finished"
+            f"the map shows no wall on {100 * building.closed_m / edge_m:.0f} % of the "
+            f"outline ({building.closed_m:.3g} m of {edge_m:.3g} m, {n_closed} sections): "
+            "doors that stood open, glass, or a map that is not finished"
         )
 
 

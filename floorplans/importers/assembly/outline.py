@@ -131,39 +131,55 @@ def _enclosed_region(
     Under a strict limit a building is open where the default limit would enclose more of it;
     otherwise only where hardly any of the walls are enclosed, in whatever number of buildings.
     """
-    widest_m = max(limit_m, CLOSED_GAP_M)
-    links = gap_links(lines, widest_m)
-    found = _best_region(lines, links, given, limit_m)
+    closed = _region(lines, lines, np.empty((0, 2, 2)), given)
+    if closed and closed.enclosed > 1 - _ENOUGH:
+        return closed
+    outer = lines if closed is None or given is not None else _not_within(lines, closed.polygon)
+    links = gap_links(outer, max(limit_m, CLOSED_GAP_M))
+    found = _best_region(lines, outer, links, given, limit_m)
     if is_strict and limit_m < CLOSED_GAP_M:
-        wider = _best_region(lines, links, given, CLOSED_GAP_M)
+        wider = _best_region(lines, outer, links, given, CLOSED_GAP_M)
         if wider and (found is None or wider.enclosed > found.enclosed + _ENOUGH):
             return wider
     if found and (found.enclosed > _MOSTLY_OPEN or _is_closed(lines, links, found)):
         return found
-    wider = _best_region(lines, gap_links(lines, max(_GAPS_M)), given, max(_GAPS_M))
+    links = gap_links(outer, max(_GAPS_M))
+    wider = _best_region(lines, outer, links, given, max(_GAPS_M))
     if found and not (wider and wider.enclosed > _MOSTLY_OPEN):
         return found
     return wider or _hull(lines)
 
 
+def _not_within(lines: Lines, region: Polygon) -> Lines:
+    """Lines that bound a region or lie outside: those within cannot extend it."""
+    shapely.prepare(region)
+    return lines[~shapely.contains_properly(region, lines)]
+
+
 def _best_region(
-    lines: Lines, links: NDArray[np.float64], given: Polygon | None, limit_m: float
+    lines: Lines, outer: Lines, links: NDArray[np.float64], given: Polygon | None, limit_m: float
 ) -> _Region | None:
     """Region with most of the walls for the least width of gaps; None if there is none."""
-    total_m = float(shapely.length(lines).sum())
     lengths_m = link_lengths(links)
     best: _Region | None = None
     for gap_m in [*(width for width in _GAPS_M if width < limit_m), limit_m]:
-        polygon = _largest_face(lines, links[lengths_m <= gap_m], given)
-        if polygon is None:
-            continue
-        enclosed = _length_inside(lines, polygon) / total_m
-        if best is None or enclosed > best.enclosed + _ENOUGH:
-            gaps = tuple(_open_sections(polygon, lines))
-            best = _Region(_simplified(polygon), gaps, enclosed)
-        if best.enclosed > 1 - _ENOUGH:
+        region = _region(lines, outer, links[lengths_m <= gap_m], given)
+        if region and (best is None or region.enclosed > best.enclosed + _ENOUGH):
+            best = region
+        if best and best.enclosed > 1 - _ENOUGH:
             break
     return best
+
+
+def _region(
+    lines: Lines, outer: Lines, links: NDArray[np.float64], given: Polygon | None
+) -> _Region | None:
+    """Region that the outer lines and links enclose, and how much of all lines it holds."""
+    polygon = _largest_face(outer, links, given)
+    if polygon is None:
+        return None
+    enclosed = _length_inside(lines, polygon) / float(shapely.length(lines).sum())
+    return _Region(_simplified(polygon), tuple(_open_sections(polygon, outer)), enclosed)
 
 
 def _simplified(polygon: Polygon) -> Polygon:

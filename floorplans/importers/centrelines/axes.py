@@ -79,24 +79,73 @@ def on_common_lines(axes: list[Axis], solid: BaseGeometry) -> list[Axis]:
 def _groups(axes: list[Axis]) -> list[list[Axis]]:
     """Group axes that are nearly collinear with the longest of them."""
     groups: list[list[Axis]] = []
+    leaders = _Lines(len(axes))
     for axis in sorted(axes, key=lambda axis: -axis.length_m):
-        for group in groups:
-            if _on_line_of(group[0], axis):
-                group.append(axis)
-                break
+        ends = leaders.across(axis)
+        parallel = np.abs(leaders.along @ axis.vector) >= _SAME_DIRECTION * axis.length_m
+        apart = _OFFSET_FRACTION * np.maximum(leaders.thickness_m, axis.thickness_m)
+        near = np.flatnonzero(parallel & (np.abs(ends).max(axis=1) <= apart))
+        if near.size:
+            groups[int(near[0])].append(axis)
         else:
             groups.append([axis])
+            leaders.add(axis)
     return groups
 
 
-def _on_line_of(first: Axis, other: Axis) -> bool:
-    along = first.vector / first.length_m
-    if abs(other.vector @ along) < _SAME_DIRECTION * other.length_m:
-        return False
-    apart = max(first.thickness_m, other.thickness_m) * _OFFSET_FRACTION
-    across = np.array([-along[1], along[0]])
-    ends = np.array([other.start, other.end]) - np.array(first.start)
-    return bool(np.abs(ends @ across).max() <= apart)
+class _Lines:
+    """Growing arrays of the lines of axes.
+
+    Attributes
+    ----------
+    start, along : (n, 2) float64
+        One end [m], and the unit vector.
+    length_m, thickness_m : (n,) float64
+    """
+
+    def __init__(self, capacity: int) -> None:
+        self._n = 0
+        self._start, self._along = np.empty((capacity, 2)), np.empty((capacity, 2))
+        self._length_m, self._thickness_m = np.empty(capacity), np.empty(capacity)
+
+    @property
+    def start(self) -> NDArray[np.float64]:
+        return self._start[: self._n]
+
+    @property
+    def along(self) -> NDArray[np.float64]:
+        return self._along[: self._n]
+
+    @property
+    def length_m(self) -> NDArray[np.float64]:
+        return self._length_m[: self._n]
+
+    @property
+    def thickness_m(self) -> NDArray[np.float64]:
+        return self._thickness_m[: self._n]
+
+    def add(self, axis: Axis) -> None:
+        """Add an axis."""
+        k = self._n
+        self._start[k], self._along[k] = axis.start, axis.vector / axis.length_m
+        self._length_m[k], self._thickness_m[k] = axis.length_m, axis.thickness_m
+        self._n += 1
+
+    def across(self, axis: Axis) -> NDArray[np.float64]:
+        """Offsets of an axis's ends to the left of each line (n, 2) [m]."""
+        ends = np.array([axis.start, axis.end])[None] - self.start[:, None]
+        return self.along[:, :1] * ends[..., 1] - self.along[:, 1:] * ends[..., 0]
+
+    def covers(self, axis: Axis) -> bool:
+        """Whether an axis runs within the wall of one of the lines, which are longer."""
+        parallel = np.abs(self.along @ axis.vector) >= _DUPLICATE_DIRECTION * axis.length_m
+        beside = np.abs(self.across(axis)).max(axis=1)
+        near = beside <= np.maximum(self.thickness_m, axis.thickness_m) / 2
+        k = np.flatnonzero(parallel & near)
+        ends = np.array([axis.start, axis.end])[None] - self.start[k, None]
+        s = np.sort(np.einsum("kec,kc->ke", ends, self.along[k]), axis=1)
+        shared = np.minimum(s[:, 1], self.length_m[k]) - np.maximum(s[:, 0], 0.0)
+        return bool((shared > _DUPLICATE_FRACTION * axis.length_m).any())
 
 
 def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
@@ -132,22 +181,12 @@ def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
 def _without_duplicates(axes: list[Axis]) -> list[Axis]:
     """Remove axes that run within the wall of a longer one."""
     kept: list[Axis] = []
+    longer = _Lines(len(axes))
     for axis in sorted(axes, key=lambda axis: -axis.length_m):
-        if not any(_covers(longer, axis) for longer in kept):
+        if not longer.covers(axis):
             kept.append(axis)
+            longer.add(axis)
     return kept
-
-
-def _covers(longer: Axis, axis: Axis) -> bool:
-    along = longer.vector / longer.length_m
-    if abs(axis.vector @ along) < _DUPLICATE_DIRECTION * axis.length_m:
-        return False
-    ends = np.array([axis.start, axis.end]) - np.array(longer.start)
-    s = np.sort(ends @ along)
-    beside = np.abs(ends @ np.array([-along[1], along[0]])).max()
-    shared = min(s[1], longer.length_m) - max(s[0], 0.0)
-    near = beside <= max(longer.thickness_m, axis.thickness_m) / 2
-    return bool(near and shared > _DUPLICATE_FRACTION * axis.length_m)
 
 
 def _merged(sections: list[_Section], is_solid: Callable[[float, float], bool]) -> list[_Section]:

@@ -30,6 +30,7 @@ MAX_ENTITIES = 500_000
 """After blocks are exploded."""
 
 _MAX_DEPTH = 24
+_MOST_SHOWN = 100_000  # points of what is left out
 _RECORD = re.compile(rb"^[ \t]*0[ \t]*\r?\n", re.MULTILINE)
 _FILLED = ("HATCH", "SOLID", "TRACE")
 
@@ -56,6 +57,8 @@ class Content:
     ----------
     curves : mapping of str to list of Curve
         By layer; only of relevant layers.
+    left_out : mapping of str to list of Curve
+        By layer, of ignored layers, up to a number of them; only to show them.
     symbols : list of Symbol
     n_objects : Counter of str
         Objects of each layer, after blocks are exploded.
@@ -66,6 +69,7 @@ class Content:
     """
 
     curves: defaultdict[str, list[Curve]] = field(default_factory=lambda: defaultdict(list))
+    left_out: defaultdict[str, list[Curve]] = field(default_factory=lambda: defaultdict(list))
     symbols: list[Symbol] = field(default_factory=list[Symbol])
     n_objects: Counter[str] = field(default_factory=Counter[str])
     hidden: set[str] = field(default_factory=set[str])
@@ -222,6 +226,7 @@ class _Collector:
         self._tolerance = tolerance
         self._meanings: dict[str, Meaning] = {}
         self._blocks: dict[str, tuple[Curve, ...]] = {}
+        self._n_shown = 0
 
     def collect(self, entities: Iterable[DXFGraphic], within: str | None, depth: int) -> None:
         """Collect entities; those of a block on layer 0 are on the layer `within`."""
@@ -244,8 +249,18 @@ class _Collector:
 
     def _collect_curve(self, entity: DXFGraphic, layer: str) -> None:
         self._content.n_objects[layer] += 1
-        if self._meaning(layer).kind != "ignore" and entity.dxftype() in CURVE_TYPES:
+        if entity.dxftype() not in CURVE_TYPES:
+            return
+        if self._meaning(layer).kind != "ignore":
             self._content.curves[layer] += curves_of(entity, self._tolerance)
+        elif self._n_shown < _MOST_SHOWN:
+            self._show(layer, curves_of(entity, self._tolerance))
+
+    def _show(self, layer: str, curves: Iterable[Curve]) -> None:
+        """Keep what is left out, to show it."""
+        kept = [curve for curve in curves if is_finite(curve)]
+        self._n_shown += sum(len(curve.points) for curve in kept)
+        self._content.left_out[layer] += kept
 
     def _collect_insert(self, insert: Any, layer: str, depth: int) -> None:
         layer_kind = self._meaning(layer).kind
@@ -257,6 +272,9 @@ class _Collector:
         kind = name_kind if named else layer_kind
         if layer_kind == "ignore" or depth >= _MAX_DEPTH:
             self._content.n_objects[layer] += 1
+            if self._n_shown < _MOST_SHOWN:
+                matrix = insert.matrix44()
+                self._show(layer, (moved_curve(c, matrix) for c in self._block(insert, depth)))
         elif kind in ("door", "window"):
             self._content.n_objects[layer] += 1
             for single in _singles(insert):

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from shapely.geometry import LineString, MultiLineString
+
 from floorplans.errors import PlanError
 from floorplans.importers.draft import LayerUse
 from floorplans.importers.dxf.drawing import Content
 from floorplans.importers.layer_names import Kind, Meaning, is_foundation, meaning_of
+from floorplans.importers.original import DrawnLayer, Original
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,20 @@ class Layers:
             LayerUse(name, self.content.n_objects[name], self._became(name), self._is_unknown(name))
             for name in sorted(self.meanings, key=str.casefold)
         )
+
+    def original(self, metric: Content) -> Original:
+        """Everything that is drawn in model space [m]."""
+        return Original(tuple(self._drawn(use, metric) for use in self.uses()))
+
+    def _drawn(self, use: LayerUse, metric: Content) -> DrawnLayer:
+        curves = [*metric.curves.get(use.name, ()), *metric.left_out.get(use.name, ())]
+        symbols = [c for s in metric.symbols if s.layer == use.name for c in s.curves]
+        is_used = bool(symbols) or self.meanings[use.name].kind not in (None, "ignore")
+        lines = [
+            LineString([*curve.points, *curve.points[: curve.closed]])
+            for curve in (*curves, *symbols)
+        ]
+        return DrawnLayer(use.name, use.became, is_used, MultiLineString(lines))
 
     def _is_unknown(self, name: str) -> bool:
         return self.meanings[name].kind is None and not is_foundation(name)

@@ -116,6 +116,7 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
             *([missing_blocks(content)] if content.missing else []),
             *unmatched(options.layers, content.n_objects),
         ),
+        original=layers.original(metric),
     )
 
 
@@ -156,6 +157,8 @@ def _in_metres(content: Content, unit_m: float) -> Content:
     metric = Content(n_objects=content.n_objects, hidden=content.hidden)
     for layer, curves in content.curves.items():
         metric.curves[layer] = [scaled(curve) for curve in curves]
+    for layer, curves in content.left_out.items():
+        metric.left_out[layer] = [scaled(curve) for curve in curves]
     metric.symbols = [
         replace(symbol, curves=tuple(scaled(curve) for curve in symbol.curves))
         for symbol in content.symbols

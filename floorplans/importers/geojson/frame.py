@@ -49,7 +49,10 @@ def geometry_of(feature: Mapping[str, Any], index: int) -> BaseGeometry:
 
 
 def to_metres(
-    geometries: Sequence[BaseGeometry], crs: str | None, unit: str | None
+    geometries: Sequence[BaseGeometry],
+    crs: str | None,
+    unit: str | None,
+    beside: Sequence[BaseGeometry] = (),
 ) -> tuple[list[BaseGeometry], GeoOrigin | None]:
     """Transform geometries to a local frame in metres.
 
@@ -62,11 +65,13 @@ def to_metres(
         they are degrees, or metres if they cannot be degrees.
     unit : str or None
         One of `units.UNITS`, for coordinates that are lengths in a plane; overrides `crs`.
+    beside : sequence of shapely geometries
+        Transformed like the others, without influence on the frame.
 
     Returns
     -------
     (list of shapely geometry, GeoOrigin or None)
-        In metres, and the place of (0, 0); None if the coordinates were lengths already.
+        All in metres, and the place of (0, 0); None if the coordinates were lengths already.
     """
     n_points = sum(shapely.get_num_coordinates(geometry) for geometry in geometries)
     if n_points == 0:
@@ -74,19 +79,22 @@ def to_metres(
     if n_points > MAX_POINTS:
         raise PlanError(f"{n_points} points, at most {MAX_POINTS} are read; cut out one building")
     if unit is not None or crs == "" or (crs is None and not _may_be_degrees(geometries)):
-        return _scaled(geometries, unit or "m"), None
+        return _scaled(geometries, unit or "m", beside), None
     degrees = geometries if crs is None else _degrees(geometries, crs)
     _check_degrees(degrees)
+    around = beside if crs is None else _degrees(beside, crs)
     x_min, y_min, _, _ = shapely.total_bounds(list(degrees))
     origin = GeoOrigin(round(float(x_min), 9), round(float(y_min), 9))
-    return [shapely.transform(geometry, origin.to_plan) for geometry in degrees], origin
+    return [shapely.transform(g, origin.to_plan) for g in (*degrees, *around)], origin
 
 
-def _scaled(geometries: Sequence[BaseGeometry], unit: str) -> list[BaseGeometry]:
+def _scaled(
+    geometries: Sequence[BaseGeometry], unit: str, beside: Sequence[BaseGeometry]
+) -> list[BaseGeometry]:
     unit_m = unit_length(unit)
     width, depth = _size(geometries).tolist()
     check_size((width, depth), unit, "coordinates are taken")
-    return [shapely.transform(geometry, lambda points: points * unit_m) for geometry in geometries]
+    return [shapely.transform(g, lambda points: points * unit_m) for g in (*geometries, *beside)]
 
 
 def _may_be_degrees(geometries: Sequence[BaseGeometry]) -> bool:

@@ -7,23 +7,29 @@ if no wall is drawn as an area, walls are also placed around and between the roo
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence, Set
+from contextlib import suppress
 from pathlib import Path
+
+from shapely.geometry import GeometryCollection
+from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
 from floorplans.geojson_plan import is_plan, plan_from_geojson
 from floorplans.georeference import GeoOrigin
 from floorplans.importers.draft import Draft, ImportOptions, LayerUse, Origin
-from floorplans.importers.geojson.features import FeatureClass, Kind, classify
+from floorplans.importers.geojson.features import FeatureClass, Kind, classify, levels_of
 from floorplans.importers.geojson.files import Collection, read_collection
 from floorplans.importers.geojson.frame import geometry_of, to_metres
 from floorplans.importers.geojson.levels import on_level
 from floorplans.importers.geojson.walls import Placed, openings_of, walls_of
 from floorplans.importers.layer_names import is_horizontal_opening, unmatched
+from floorplans.importers.original import DrawnLayer, Original
 from floorplans.plan import FloorPlan
 
 TOLERANCE_M = 0.05
 
+_USE = {True: "used", False: "left out"}
 _USED: tuple[Kind, ...] = ("wall", "door", "window", "passage", "room", "outline")
 
 
@@ -50,7 +56,7 @@ def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
     if is_plan(collection.document):
         return plan_from_geojson(collection.document, origin=str(path))
     classes = [classify(feature, options) for feature in collection.features]
-    placed, origin = _placed(collection, classes, options)
+    placed, left_out, origin = _placed(collection, classes, options)
     tolerance_m = options.tolerance_m or TOLERANCE_M
     walls = walls_of(placed, tolerance_m)
     if not walls:
@@ -63,13 +69,14 @@ def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
         georeference=origin,
         layers=tuple(_uses(placed, classes)),
         notes=tuple(unmatched(options.layers, {what.label for what in classes})),
+        original=_original(placed, left_out),
     )
 
 
 def _placed(
     collection: Collection, classes: Sequence[FeatureClass], options: ImportOptions
-) -> tuple[list[Placed], GeoOrigin | None]:
-    """Return the usable features of one level, in metres, and where (0, 0) is."""
+) -> tuple[list[Placed], list[Placed], GeoOrigin | None]:
+    """Return the used features of one level and those left out, in metres, and where (0, 0) is."""
     used = [i for i, what in enumerate(classes) if what.kind in _USED]
     if not used:
         raise PlanError(_nothing_found(classes), remedy="layers")
@@ -77,12 +84,41 @@ def _placed(
     here = on_level([collection.features[i] for i in [*used, *levels]], options.level)
     used = [i for i, is_here in zip(used, here, strict=False) if is_here]
     drawn = [geometry_of(collection.features[i], i) for i in used]
-    metres, origin = to_metres(drawn, collection.crs, options.unit)
+    others = dict(_on_the_same_level(collection, used, {*levels, *used}))
+    metres, origin = to_metres(drawn, collection.crs, options.unit, list(others.values()))
     placed = [
         Placed(collection.features[i], classes[i], geometry)
-        for i, geometry in zip(used, metres, strict=True)
+        for i, geometry in zip([*used, *others], metres, strict=True)
     ]
-    return placed, origin
+    return placed[: len(used)], placed[len(used) :], origin
+
+
+def _on_the_same_level(
+    collection: Collection, used: Sequence[int], known: Set[int]
+) -> Iterator[tuple[int, BaseGeometry]]:
+    """Yield index and geometry of the other features that are on the levels of the used ones."""
+    levels = frozenset[str]().union(*(levels_of(collection.features[i]) for i in used))
+    for i, feature in enumerate(collection.features):
+        own = levels_of(feature)
+        if i not in known and (not own or own & levels):
+            with suppress(PlanError):  # what is left out need not be readable
+                yield i, geometry_of(feature, i)
+
+
+def _original(placed: Sequence[Placed], left_out: Sequence[Placed]) -> Original:
+    """The features of the level, by their names."""
+    layers: dict[tuple[str, bool], list[BaseGeometry]] = {}
+    for features, is_used in ((placed, True), (left_out, False)):
+        for feature in features:
+            layers.setdefault((feature.what.label, is_used), []).append(feature.geometry)
+    return Original(
+        tuple(
+            DrawnLayer(
+                label, "used" if is_used else "left out", is_used, GeometryCollection(shapes)
+            )
+            for (label, is_used), shapes in sorted(layers.items(), key=lambda item: item[0])
+        )
+    )
 
 
 def _named(origin: GeoOrigin) -> Origin:

@@ -11,12 +11,15 @@ from __future__ import annotations
 import warnings
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from math import atan2, degrees
 from pathlib import Path
 
 import numpy as np
 from shapely.errors import ShapelyError
+from shapely.geometry import GeometryCollection
+from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
 from floorplans.georeference import GeoOrigin
@@ -27,6 +30,7 @@ from floorplans.importers.ifc.materials import Materials
 from floorplans.importers.ifc.shapes import Body, Scale, bodies
 from floorplans.importers.ifc.walls import ReadWall, read_filling, read_wall
 from floorplans.importers.layer_names import unmatched
+from floorplans.importers.original import DrawnLayer, Original
 from floorplans.values import MAX_WALLS
 
 _DAMAGED = (
@@ -36,6 +40,7 @@ _DAMAGED = (
 """Errors of models whose entities lack parts or refer to a wrong class."""
 
 _SLABS = ("IfcSlab", "IfcRoof", "IfcCovering")
+_MOST_SHOWN = 2000
 _CEILING_M = (1.8, 30.0)
 _SAME_CEILING_M = 0.3
 _TO_CEILING_M = 0.35
@@ -107,6 +112,26 @@ def _read_storey(model: Model, path: Path, options: ImportOptions) -> Draft:
         layers=tuple(_uses(storey, read)),
         materials=materials.own,
         assumed=tuple(materials.assumed()),
+        original=_original(storey, scale),
+    )
+
+
+def _original(storey: Storey, scale: Scale) -> Original:
+    """Footprints of the storey's elements by class, except of slabs, which cover everything."""
+    shapes: dict[str, list[BaseGeometry]] = {}
+    for element in storey.elements[:_MOST_SHOWN]:
+        kind = element.is_a()
+        if kind in (*_SLABS, "IfcOpeningElement"):
+            continue
+        with suppress(*_DAMAGED):  # what is left out need not be readable
+            shapes.setdefault(kind, []).extend(body.footprint for body in bodies(element, scale))
+    return Original(
+        tuple(
+            DrawnLayer(
+                kind, _BECAME.get(kind, "left out"), kind in _BECAME, GeometryCollection(own)
+            )
+            for kind, own in sorted(shapes.items())
+        )
     )
 
 

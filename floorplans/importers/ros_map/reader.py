@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from io import BytesIO
 from math import cos, dist, inf, sin
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import shapely
@@ -30,7 +31,6 @@ from floorplans.importers.ros_map.known_space import known_region, openings_in_b
 from floorplans.importers.ros_map.occupancy_grid import MapMetadata, Mask, OccupancyGrid, read_grid
 from floorplans.importers.ros_map.vectorise import walls_of_picture
 from floorplans.importers.units import BUILDING_M
-from floorplans.walls import Point as Point2
 
 TOLERANCE_PX = 1.5
 """Default largest distance of walls from the middle of their pixels [pixels]."""
@@ -47,6 +47,7 @@ _BOXY = 0.9  # fraction of the box around it that a box-shaped obstacle fills
 _MANY_PIECES, _PIECES_PER_M = 50, 2.0  # isolated pieces, also per metre of wall, that are noise
 _MOST_MEASURED = 200_000  # pixels that the plan is compared with
 _EVERYWHERE = np.ones((3, 3), dtype=np.bool_)
+_Shape = TypeVar("_Shape", Polygon, LineString)
 
 
 @dataclass(frozen=True)
@@ -95,13 +96,13 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
     return Draft(
         name=path.stem,
         walls=tuple(_in_metres(wall, frame) for wall in (*walls, *rings, *closing)),
-        outline=None if region is None else _polygon_in_metres(region, frame),
+        outline=None if region is None else _shape_in_metres(region, frame),
         layers=(
             LayerUse("occupied pixels", int(grid.occupied.sum()), f"{len(walls)} walls"),
             LayerUse("obstacles", len(sorted_.obstacles), "rings of walls"),
             LayerUse("specks", sorted_.n_specks, "left out"),
         ),
-        closed=tuple(_ends_in_metres(line, frame) for line in closed),
+        closed=tuple(_shape_in_metres(line, frame) for line in closed),
         notes=(*grid.notes, f"straightened with a tolerance of {tolerance_px * pixel_m:.3g} m"),
         known=_known_pixels(grid, region is not None),
         original=Original(picture=_picture(grid)),
@@ -258,14 +259,8 @@ def _in_metres(wall: RawWall, metadata: MapMetadata) -> RawWall:
     )
 
 
-def _ends_in_metres(line: LineString, metadata: MapMetadata) -> tuple[Point2, Point2]:
-    ends = np.array([line.coords[0], line.coords[-1]])
-    (a, b), (c, d) = _points_in_metres(ends, metadata).tolist()
-    return (a, b), (c, d)
-
-
-def _polygon_in_metres(region: Polygon, metadata: MapMetadata) -> Polygon:
-    return shapely.transform(region, lambda points: _points_in_metres(points, metadata))
+def _shape_in_metres(shape: _Shape, metadata: MapMetadata) -> _Shape:
+    return shapely.transform(shape, lambda points: _points_in_metres(points, metadata))
 
 
 def _known_pixels(grid: OccupancyGrid, knows_free: bool) -> KnownPixels:

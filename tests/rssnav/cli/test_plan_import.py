@@ -148,6 +148,19 @@ def test_an_open_building_is_a_draft_with_a_picture_of_its_gaps(open_drawing: Pa
     assert draft.read_text().startswith("# DRAFT")
 
 
+def test_a_report_page_is_written_for_a_plan_and_for_a_draft(
+    drawing: Path, open_drawing: Path, tmp_path: Path
+):
+    page = tmp_path / "page.html"
+    for file in (open_drawing, drawing):
+        run("plan", "import", file, "-o", tmp_path / "a.toml", "--report", page, "--force")
+        text = page.read_text()
+        assert "<svg" in text
+        assert ("cannot be traced until" in text) == (file == open_drawing)
+        page.unlink()
+    assert run("plan", "import", drawing, "-o", "a.toml", "--report", "a.pdf").exit_code == 2
+
+
 def test_wider_gaps_are_closed_on_request(open_drawing: Path, tmp_path: Path):
     output = tmp_path / "hall.toml"
     text = done("plan", "import", open_drawing, "-o", output, "--close-gaps", 14.1)
