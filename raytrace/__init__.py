@@ -16,6 +16,7 @@ from raytrace.errors import (
     SceneWarning,
     TraceStoppedError,
 )
+from raytrace.evaluation import TracedPoints, evaluate_paths, trace_points
 from raytrace.grid import Grid
 from raytrace.radio.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
 from raytrace.radio.materials import (
@@ -67,13 +68,16 @@ __all__ = [
     "Slab",
     "TraceConfig",
     "TraceStoppedError",
+    "TracedPoints",
     "Transmitter",
     "TransmitterMaps",
     "compute_radio_map",
     "compute_radio_maps",
     "dielectrics_of",
     "estimate_cost",
+    "evaluate_paths",
     "find_material",
     "received_power",
     "trace_paths",
+    "trace_points",
 ]

@@ -4,7 +4,6 @@ import platform
 import time
 import warnings
 from collections.abc import Mapping
-from dataclasses import fields
 from importlib.metadata import version
 from typing import Any
 
@@ -88,12 +87,7 @@ def _list_paths(tracing: Tracing, evaluation: Evaluation) -> Paths:
         found.append(path_class.list_paths(evaluation))
         most_bytes = COPIES_OF_PATHS * sum(paths.vertices.nbytes for paths in found)
         taking(tracing.guard, most_bytes, "the paths")
-    return (
-        Paths(*(np.concatenate([getattr(p, f.name) for p in found]) for f in fields(Paths)))
-        .with_halves_joined()
-        .with_bounded_gain()
-        .strongest_first()
-    )
+    return Paths.joined(found).with_halves_joined().with_bounded_gain().strongest_first()
 
 
 def compute_radio_map(

@@ -138,6 +138,15 @@ def transmission_tables(
     return np.stack([_table(c.t_tm, c.t_te - c.t_tm) for c in _at_all_angles(slabs, frequency_hz)])
 
 
+def both_tables(slabs: Sequence[Slab], frequency_hz: float) -> tuple[Floats, Floats]:
+    """Return `slab_tables` and `transmission_tables`, with the coefficients computed once."""
+    found = _at_all_angles(slabs, frequency_hz)
+    return (
+        np.stack([_table(c.r_tm, c.r_te + c.r_tm) for c in found]),
+        np.stack([_table(c.t_tm, c.t_te - c.t_tm) for c in found]),
+    )
+
+
 def _at_all_angles(
     slabs: Sequence[tuple[Material | str, float]], frequency_hz: float
 ) -> list[SlabCoefficients]:

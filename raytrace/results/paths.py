@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,16 @@ import numpy as np
 from raytrace.arrays import Complexes, Floats, Int8s, Ints
 from raytrace.constants import SPEED_OF_LIGHT
 from raytrace.extras import needs_extra
-from raytrace.kernels.path_points import DIFFRACTION, NOTHING, REFLECTION, TRANSMISSION
+from raytrace.kernels.steps import (
+    COSINE,
+    DIFFRACTION,
+    NOTHING,
+    REFLECTION,
+    TRANSMISSION,
+    Steps,
+    joined,
+    rows_of,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -49,6 +59,7 @@ class Paths:
     length_m: Floats
     gain: Complexes
     weight: Floats
+    steps: Steps | None = None
 
     def __len__(self) -> int:
         """Number of paths."""
@@ -69,6 +80,23 @@ class Paths:
     def n_interactions(self) -> Ints:
         """(n,) number of reflections, diffractions and transmissions."""
         return np.count_nonzero(self.interactions, axis=1)
+
+    @property
+    def surface(self) -> Ints:
+        """(n, most) slab of each reflection and transmission, a number in `Scene.slabs`, or -1."""
+        return self._steps().slab.astype(np.int64)
+
+    @property
+    def incidence(self) -> Floats:
+        """(n, most) angle of incidence of each reflection and transmission [rad], 0 for others."""
+        steps = self._steps()
+        cosine = np.where(steps.slab >= 0, steps.frame[:, :, COSINE], 1.0)
+        return np.arccos(np.minimum(cosine, 1.0))
+
+    def _steps(self) -> Steps:
+        if self.steps is None:
+            raise ValueError("these paths have no steps: expected paths that trace_paths found")
+        return self.steps
 
     @property
     def departure(self) -> Floats:
@@ -94,7 +122,9 @@ class Paths:
         pandas.DataFrame
             Columns ``receiver``, ``sequence`` (as `sequence` writes it), ``n_reflections``,
             ``n_diffractions``, ``n_transmissions``, ``length_m``, ``delay_s``, ``weight``,
-            ``gain_real``, ``gain_imag``, ``gain_db``, and the azimuth and zenith angles [rad]
+            ``gain_real``, ``gain_imag``, ``gain_db``, ``surfaces`` and ``incidence_deg`` (slabs and
+            angles of incidence [deg] of the reflections and transmissions in their order, separated
+            by blanks, "-" for a diffraction), and the azimuth and zenith angles [rad]
             ``departure_azimuth``, ``departure_zenith``, ``arrival_azimuth``, ``arrival_zenith``.
         """
         with needs_extra("data"):
@@ -113,12 +143,28 @@ class Paths:
                 "gain_real": self.gain.real,
                 "gain_imag": self.gain.imag,
                 "gain_db": self.gain_db,
+                **self._columns_of_steps(),
                 "departure_azimuth": departure[:, 0],
                 "departure_zenith": departure[:, 1],
                 "arrival_azimuth": arrival[:, 0],
                 "arrival_zenith": arrival[:, 1],
             }
         )
+
+    def _columns_of_steps(self) -> dict[str, list[str]]:
+        """Return the columns of the table that need steps; none without."""
+        if self.steps is None:
+            return {}
+        degrees = np.degrees(self.incidence)
+        texts: dict[str, list[str]] = {"surfaces": [], "incidence_deg": []}
+        for k, n in enumerate(self.n_interactions):
+            slabs = self.steps.slab[k, :n]
+            texts["surfaces"].append(" ".join("-" if s < 0 else str(s) for s in slabs))
+            angles = zip(slabs, degrees[k, :n], strict=True)
+            texts["incidence_deg"].append(
+                " ".join("-" if s < 0 else f"{angle:.6g}" for s, angle in angles)
+            )
+        return texts
 
     def impulse_response(
         self,
@@ -200,6 +246,21 @@ class Paths:
             self.length_m[rows],
             self.gain[rows],
             self.weight[rows],
+            None if self.steps is None else rows_of(self.steps, rows),
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[Paths]) -> Paths:
+        """Return the paths of several lists, one after the other; at least one list."""
+        steps = [paths.steps for paths in parts if paths.steps is not None]
+        return cls(
+            np.concatenate([paths.receiver for paths in parts]),
+            np.concatenate([paths.interactions for paths in parts]),
+            np.concatenate([paths.vertices for paths in parts]),
+            np.concatenate([paths.length_m for paths in parts]),
+            np.concatenate([paths.gain for paths in parts]),
+            np.concatenate([paths.weight for paths in parts]),
+            joined(steps) if len(steps) == len(parts) else None,
         )
 
 

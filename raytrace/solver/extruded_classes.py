@@ -5,7 +5,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from raytrace.arrays import Floats, Int8s, Ints
+from raytrace.arrays import Floats, Ints
 from raytrace.config import TraceConfig
 from raytrace.geometry import edges
 from raytrace.kernels.beam_hits import Hits, hit_points, no_hits
@@ -19,6 +19,7 @@ from raytrace.kernels.horizontal_edge_legs import (
     new_edge_workspace,
 )
 from raytrace.kernels.horizontal_edges import sum_horizontal_edge
+from raytrace.kernels.lanes import WIDTH
 from raytrace.kernels.path_points import (
     horizontal_edge_points,
     reflection_points,
@@ -27,6 +28,7 @@ from raytrace.kernels.path_points import (
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.records import Record, new_record, no_record
 from raytrace.kernels.reflections import ReflectionBeams, sum_reflections
+from raytrace.kernels.steps import PATH_BYTES, STEP_BYTES, Steps, new_steps
 from raytrace.kernels.strips import edge_frame, grow_strips, hit_from_strip
 from raytrace.kernels.sums import Sums, new_sums, sums_bytes
 from raytrace.kernels.unfolding import new_leg
@@ -44,7 +46,7 @@ from raytrace.results.paths import Paths
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import sums_in_work
 from raytrace.solver.limits import check_whole, nbytes, taking
-from raytrace.solver.path_class import Evaluation, PathClass
+from raytrace.solver.path_class import Evaluation, KeptRecord, PathClass
 from raytrace.solver.setup import BEAMS, Tracing
 
 HIT_BATCH = 1 << 17
@@ -87,8 +89,8 @@ class _BeamClass(ABC, Generic[Beams]):
         """Evaluate the paths of all hits."""
 
     @abstractmethod
-    def _write_points(self, beams: Beams, record: Record, points: Floats, kinds: Int8s) -> None:
-        """Write points (n, k, 3) [m] and interactions (n, k - 2) of recorded paths."""
+    def _write_points(self, beams: Beams, record: Record, points: Floats, steps: Steps) -> None:
+        """Write points (n or 1, k, 3) [m] and steps of recorded paths."""
 
     def _beams(self) -> Beams:
         return self._grow() if self._kept is None else self._kept
@@ -122,6 +124,28 @@ class _BeamClass(ABC, Generic[Beams]):
 
     def list_paths(self, evaluation: Evaluation) -> Paths:
         """See `PathClass`; the paths are counted first, then recorded."""
+        return self._paths(*self._recorded(evaluation))
+
+    def keep_paths(self, evaluation: Evaluation) -> KeptRecord:
+        """See `PathClass`."""
+        beams, record = self._recorded(evaluation)
+        receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
+
+        def steps_of(rows: Ints) -> Steps:
+            chosen = record._replace(
+                key=record.key[rows], gain=record.gain[rows], weight=record.weight[rows]
+            )
+            n_max = self._max_interactions()
+            points, steps = np.zeros((1, n_max + 2, 3)), new_steps(len(rows), n_max)
+            self._write_points(beams, chosen, points, steps)
+            check_whole(self._tracing.guard, True, PATHS)
+            return steps
+
+        power = record.weight * np.abs(record.gain) ** 2
+        return KeptRecord(receiver, power, record.weight, steps_of)
+
+    def _recorded(self, evaluation: Evaluation) -> tuple[Beams, Record]:
+        """Return the beams with all their hits, and the paths of these."""
         grown = self._beams()
         guard, n_beams = self._guard_beside(grown), self._n_beams(grown)
         beams, done = self._hit(grown, np.arange(n_beams), ALL_HITS, guard)
@@ -133,7 +157,7 @@ class _BeamClass(ABC, Generic[Beams]):
             collector = Collector(self._new_sums(), record, evaluation.min_power, guard)
             self._evaluate(beams, evaluation.tables, collector)
             check_whole(guard, True, PATHS)
-        return self._paths(beams, record)
+        return beams, record
 
     def _max_interactions(self) -> int:
         config = self._tracing.config
@@ -141,16 +165,17 @@ class _BeamClass(ABC, Generic[Beams]):
 
     def _path_bytes(self) -> int:
         """Size of a path with its record, and of all its copies."""
-        return COPIES_OF_PATHS * (25 * (self._max_interactions() + 2) + 100)
+        n_max = self._max_interactions()
+        return COPIES_OF_PATHS * (24 * (n_max + 2) + STEP_BYTES * n_max + PATH_BYTES + 48)
 
     def _paths(self, beams: Beams, record: Record) -> Paths:
         n, n_max = len(record.gain), self._max_interactions()
-        points, kinds = np.zeros((n, n_max + 2, 3)), np.zeros((n, n_max), np.int8)
-        self._write_points(beams, record, points, kinds)
+        points, steps = np.zeros((n, n_max + 2, 3)), new_steps(n, n_max)
+        self._write_points(beams, record, points, steps)
         check_whole(self._tracing.guard, True, PATHS)
         length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
         receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
-        return Paths(receiver, kinds, points, length, record.gain, record.weight)
+        return Paths(receiver, steps.kind, points, length, record.gain, record.weight, steps)
 
 
 class Reflections(_BeamClass[ReflectionBeams]):
@@ -174,11 +199,11 @@ class Reflections(_BeamClass[ReflectionBeams]):
         sum_reflections(geometry, tables, beams, leg, workspace, collector)
 
     def _write_points(
-        self, beams: ReflectionBeams, record: Record, points: Floats, kinds: Int8s
+        self, beams: ReflectionBeams, record: Record, points: Floats, steps: Steps
     ) -> None:
         leg = new_leg(beams.tree.link)
         t = self._tracing
-        reflection_points(t.geometry, beams, leg, record, points, kinds, t.guard)
+        reflection_points(t.geometry, beams, leg, record, points, steps, t.guard)
 
 
 class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
@@ -232,11 +257,12 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
         sum_vertical_edge(geometry, tables, beams, bounds, leg, workspace, collector)
 
     def _write_points(
-        self, beams: VerticalEdgeBeams, record: Record, points: Floats, kinds: Int8s
+        self, beams: VerticalEdgeBeams, record: Record, points: Floats, steps: Steps
     ) -> None:
         leg = new_leg(beams.tree.link)
         t = self._tracing
-        vertical_edge_points(t.geometry, beams, leg, record, points, kinds, t.guard)
+        rows = np.empty((3, WIDTH))
+        vertical_edge_points(t.geometry, beams, leg, record, points, steps, rows, t.guard)
 
 
 def _heights(edge: edges.VerticalEdge, height_m: float) -> tuple[float, float]:
@@ -304,11 +330,11 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
         sum_horizontal_edge(geometry, tables, beams, work, collector)
 
     def _write_points(
-        self, beams: HorizontalEdgeBeams, record: Record, points: Floats, kinds: Int8s
+        self, beams: HorizontalEdgeBeams, record: Record, points: Floats, steps: Steps
     ) -> None:
         geometry = self._tracing.geometry
         work = new_edge_workspace(geometry.max_reflections, beams.tree, beams.strips)
-        horizontal_edge_points(geometry, beams, work, record, points, kinds, self._tracing.guard)
+        horizontal_edge_points(geometry, beams, work, record, points, steps, self._tracing.guard)
 
 
 def _hits_of_tree(

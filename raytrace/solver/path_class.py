@@ -1,10 +1,12 @@
 """What the solver knows of a path finder: classes of paths that can be summed and listed."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
-from raytrace.arrays import Ints
+from raytrace.arrays import Floats, Ints
 from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.steps import Steps
 from raytrace.kernels.sums import Sums
 from raytrace.results.paths import Paths
 
@@ -23,6 +25,26 @@ class Evaluation:
 
     tables: FieldTables
     min_power: float = 0.0
+
+
+class KeptRecord(NamedTuple):
+    """The paths of a class, n of them, of which some are to be kept.
+
+    Attributes
+    ----------
+    receiver
+        (n,) which receiver each path reaches.
+    power, weight
+        (n,) what each adds to the sum of powers there [fraction of the transmitted], and its
+        weight.
+    steps_of
+        Returns the steps of some of them.
+    """
+
+    receiver: Ints
+    power: Floats
+    weight: Floats
+    steps_of: Callable[[Ints], Steps]
 
 
 class PathClass(Protocol):
@@ -45,4 +67,8 @@ class PathClass(Protocol):
 
     def list_paths(self, evaluation: Evaluation) -> Paths:
         """List the paths one by one."""
+        ...
+
+    def keep_paths(self, evaluation: Evaluation) -> KeptRecord:
+        """Find the paths one by one, without their points."""
         ...

@@ -59,6 +59,10 @@ COMMANDS = {
         ("validate",),
         "Compare traced RSS with a survey, beside the usual models, on readings held out.",
     ),
+    "calibrate": Entry(
+        ("calibrate",),
+        "Fit the materials of a plan to a survey, and say how much better readings are predicted.",
+    ),
     "example": Entry(
         ("example",),
         "Write the files of a measured flat: its plan, a survey, and the licence to use them.",

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 if TYPE_CHECKING:
     from floorplans import FloorPlan
-    from raytrace import Antenna
     from rssnav.measurements.survey import Survey
+    from rssnav.measurements.traced import TraceSettings
 
 SurveyFile = Annotated[
     Path,
@@ -22,7 +22,7 @@ TransmitterFile = Annotated[
         "--transmitters",
         metavar="FILE",
         help="A CSV file of the transmitters: tx, x, y, z.",
-        show_default=False,
+        show_default="those of the plan",
     ),
 ]
 Offset = Annotated[
@@ -53,8 +53,12 @@ SurveyFrequency = Annotated[
     ),
 ]
 Antennas = Annotated[
-    Literal["isotropic", "dipole"],
-    typer.Option("--antenna", help="Of transmitters and receivers; a dipole is vertical."),
+    Literal["isotropic", "dipole"] | None,
+    typer.Option(
+        "--antenna",
+        help="Of transmitters and receivers; a dipole is vertical.",
+        show_default="the transmitters' in the plan, otherwise the preset's",
+    ),
 ]
 Report = Annotated[
     Path | None,
@@ -64,20 +68,56 @@ Report = Annotated[
 ]
 
 
-def load_survey(plan: FloorPlan, survey: Path, transmitters: Path | None) -> Survey:
-    """Read a survey and the transmitters it refers to."""
-    from rssnav.measurements.survey_csv import read_survey, read_transmitters
+def load_survey(plan: FloorPlan, name: str, survey: Path, transmitters: Path | None) -> Survey:
+    """Read a survey and the transmitters it refers to; by default those of the plan."""
+    from rssnav.measurements.survey_csv import read_survey, read_transmitters, transmitters_of
 
-    if transmitters is None:
+    if transmitters is not None:
+        return read_survey(survey, plan, read_transmitters(transmitters, plan))
+    if not plan.transmitters:
         raise typer.BadParameter(
-            "the plan names no transmitters; give a CSV file with the columns tx, x, y, z.",
+            "the plan has no [[transmitters]]; give a CSV file with the columns tx, x, y, z.",
             param_hint="--transmitters",
         )
-    return read_survey(survey, plan, read_transmitters(transmitters, plan))
+    return read_survey(survey, plan, transmitters_of(plan, Path(name).parent))
 
 
-def antenna_of(name: str) -> Antenna:
-    """Return the antenna of that name."""
-    from raytrace import HalfWaveDipole, Isotropic
+def settings_of(
+    survey: Survey, options: dict[str, Any], threads: int | None, max_memory_bytes: int | None
+) -> TraceSettings:
+    """Return how a survey is traced; a frequency that it denies is wrong usage.
 
-    return HalfWaveDipole() if name == "dipole" else Isotropic()
+    Parameters
+    ----------
+    survey
+        The readings.
+    options
+        Of the command, by parameter; those that are None have the preset's value.
+    threads, max_memory_bytes
+        See `TraceSettings`.
+    """
+    from rssnav.cli.radio import config_of
+    from rssnav.measurements.traced import TraceSettings
+    from rssnav.presets import PRESETS
+    from rssnav.transmitters import FREQUENCY_HZ, antenna_of
+
+    preset = PRESETS[options["preset"] or "building"]
+    frequency_hz = survey.frequency_hz or FREQUENCY_HZ
+    if options["frequency"] is not None:
+        frequency_hz = options["frequency"] * 1e9
+        if survey.frequency_hz not in (None, frequency_hz):
+            raise typer.BadParameter(
+                f"the survey was made at {survey.frequency_hz:g} Hz; leave the option out.",
+                param_hint="--frequency",
+            )
+    chosen = None if options["antenna"] is None else antenna_of(options["antenna"])
+    antenna = chosen or preset.antenna
+    return TraceSettings(
+        config_of(preset, options),
+        frequency_hz,
+        antenna,
+        antenna,
+        is_antenna_chosen=chosen is not None,
+        threads=threads,
+        max_memory_bytes=max_memory_bytes,
+    )

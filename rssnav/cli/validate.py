@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import typer
 
 import floorplans
@@ -22,7 +20,6 @@ from rssnav.cli.options import (
     examples,
     in_bytes,
 )
-from rssnav.cli.radio import config_of
 from rssnav.cli.survey_options import (
     Antennas,
     Offset,
@@ -31,22 +28,18 @@ from rssnav.cli.survey_options import (
     SurveyFile,
     SurveyFrequency,
     TransmitterFile,
-    antenna_of,
     load_survey,
+    settings_of,
 )
 from rssnav.kernel_cache import tracer_cache
 from rssnav.measurements.hold_out import SQUARE_M
 from rssnav.measurements.pages import cautions_of, save_validation_page, sentence_of
 from rssnav.measurements.survey import Survey
-from rssnav.measurements.traced import TraceSettings, traced_dbm
+from rssnav.measurements.traced import traced_dbm
 from rssnav.measurements.validation import Validation, validate
-from rssnav.presets import PRESETS
 from rssnav.scenes import scene_of
-from rssnav.transmitters import FREQUENCY_HZ
 
-EXAMPLE = (
-    "measured-flat/flat.toml measured-flat/survey.csv --transmitters measured-flat/transmitters.csv"
-)
+EXAMPLE = "measured-flat/flat.toml measured-flat/survey.csv"
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -66,7 +59,7 @@ def validate_plan(
     offset: Offset = "one",
     square: Square = SQUARE_M,
     frequency: SurveyFrequency = None,
-    antenna: Antennas = "isotropic",
+    antenna: Antennas = None,
     preset: Preset = "building",
     reflections: Reflections = None,
     diffractions: Diffractions = None,
@@ -84,24 +77,16 @@ def validate_plan(
     """
     check_suffix(report, (".html",), "--report")
     loaded = floorplans.load(plan)
-    read = load_survey(loaded, survey, transmitters)
-    settings = TraceSettings(
-        config_of(
-            PRESETS[preset or "building"],
-            {
-                "reflections": reflections,
-                "diffractions": diffractions,
-                "transmissions": transmissions,
-            },
-        ),
-        FREQUENCY_HZ if read.frequency_hz is None else read.frequency_hz,
-        antenna_of(antenna),
-        antenna_of(antenna),
-        threads,
-        in_bytes(max_memory),
-    )
-    if frequency is not None:
-        settings = _with_frequency(settings, read, frequency * 1e9)
+    read = load_survey(loaded, plan, survey, transmitters)
+    options = {
+        "preset": preset,
+        "reflections": reflections,
+        "diffractions": diffractions,
+        "transmissions": transmissions,
+        "antenna": antenna,
+        "frequency": frequency,
+    }
+    settings = settings_of(read, options, threads, in_bytes(max_memory))
     with stage_progress(compiles=not tracer_cache().n_compiled) as show:
         traced = traced_dbm(
             scene_of(loaded, edition),
@@ -116,15 +101,6 @@ def validate_plan(
         print_json({"plan": plan, "readings": len(read), **found.summary()})
     else:
         _print(read, found)
-
-
-def _with_frequency(settings: TraceSettings, survey: Survey, frequency_hz: float) -> TraceSettings:
-    if survey.frequency_hz not in (None, frequency_hz):
-        raise typer.BadParameter(
-            f"the survey was made at {survey.frequency_hz:g} Hz; leave the option out.",
-            param_hint="--frequency",
-        )
-    return replace(settings, frequency_hz=frequency_hz)
 
 
 def _print(survey: Survey, found: Validation) -> None:

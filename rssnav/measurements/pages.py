@@ -72,10 +72,10 @@ def cautions_of(validation: Validation) -> list[str]:
     return found
 
 
-def assumptions_of(
-    plan: FloorPlan, survey: Survey, validation: Validation, settings: TraceSettings
+def trace_assumptions(
+    plan: FloorPlan, survey: Survey, settings: TraceSettings
 ) -> list[tuple[str, str]]:
-    """List what a validation was made with."""
+    """List what a survey was traced with."""
     config = settings.config
     return [
         ("plan", f"{plan.name}, {len(plan.walls)} walls"),
@@ -86,9 +86,18 @@ def assumptions_of(
         ("transmissions, at most", str(config.max_transmissions)),
         ("transmit antenna", settings.transmit_antenna.describe()),
         ("receive antenna", settings.receive_antenna.describe()),
-        ("offsets", {"one": "one for all readings"}.get(validation.offsets, validation.offsets)),
         ("RSS", "sum of the powers of the paths"),
     ]
+
+
+def assumptions_of(
+    plan: FloorPlan, survey: Survey, validation: Validation, settings: TraceSettings
+) -> list[tuple[str, str]]:
+    """List what a validation was made with."""
+    offsets = {"one": "one for all readings"}.get(
+        validation.offsets, f"one for each {validation.offsets}"
+    )
+    return [*trace_assumptions(plan, survey, settings), ("offsets", offsets)]
 
 
 def save_validation_page(

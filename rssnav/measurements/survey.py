@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from raytrace import Antenna
 from raytrace.arrays import Bools, Floats, Ints
 
 Position = tuple[float, float, float]
@@ -63,12 +64,15 @@ class SurveyTransmitter:
         one offset is fitted.
     frequency_hz
         Carrier frequency [Hz]; None where the survey or the caller states it.
+    antenna
+        Its antenna; None where the caller states it.
     """
 
     name: str
     position: Position
     power_dbm: float = 0.0
     frequency_hz: float | None = None
+    antenna: Antenna | None = None
 
 
 @dataclass(frozen=True, eq=False)

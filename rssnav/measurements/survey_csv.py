@@ -13,6 +13,7 @@ from floorplans import FloorPlan
 from raytrace.arrays import Bools, Floats
 from rssnav.measurements.csv_table import CsvTable, read_table
 from rssnav.measurements.survey import Survey, SurveyError, SurveyTransmitter, numbers_of
+from rssnav.transmitters import antenna_of
 
 REQUIRED = ("tx", "x", "y", "z", "rss_dbm")
 OPTIONAL = ("n", "std_db", "frequency_hz", "device", "below_sensitivity")
@@ -74,6 +75,33 @@ def read_transmitters(path: str | Path, plan: FloorPlan) -> tuple[SurveyTransmit
     )
 
 
+def transmitters_of(plan: FloorPlan, folder: Path) -> tuple[SurveyTransmitter, ...]:
+    """Return the transmitters that a plan names.
+
+    Parameters
+    ----------
+    plan
+        The plan.
+    folder
+        What the paths of pattern files in it are relative to.
+
+    Raises
+    ------
+    AntennaError
+        Where the file of a pattern is wrong.
+    """
+    return tuple(
+        SurveyTransmitter(
+            t.id,
+            t.position,
+            t.power_dbm or 0.0,
+            t.frequency_hz,
+            None if t.antenna is None else antenna_of(t.antenna, t.direction, folder),
+        )
+        for t in plan.transmitters
+    )
+
+
 def read_survey(
     path: str | Path, plan: FloorPlan, transmitters: Sequence[SurveyTransmitter]
 ) -> Survey:
@@ -126,7 +154,7 @@ def read_survey(
 
 def _unknown(name: str, known: tuple[str, ...]) -> str:
     if not known:
-        return "the plan has no transmitters: name them with their places"
+        return "the plan has no transmitters: expected a table [[transmitters]] for each"
     near = get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"no such transmitter: {hint}known: {', '.join(known[:20])}"

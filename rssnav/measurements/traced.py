@@ -6,14 +6,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from raytrace import Antenna, HalfWaveDipole, Scene, SceneError, TraceConfig, Transmitter
+from raytrace import (
+    Antenna,
+    HalfWaveDipole,
+    Scene,
+    SceneError,
+    TraceConfig,
+    Transmitter,
+    received_power,
+)
 from raytrace.arrays import Floats
-from raytrace.memory import memory_limit
-from raytrace.solver.accumulate import sum_paths
-from raytrace.solver.evaluation import evaluation_of
-from raytrace.solver.extruded_classes import path_classes
-from raytrace.solver.setup import prepare
-from raytrace.solver.workers import Workers
 from rssnav.measurements.survey import Survey
 from rssnav.progress import Progress
 
@@ -30,6 +32,8 @@ class TraceSettings:
         Carrier frequency [Hz].
     transmit_antenna, receive_antenna
         The antennas; vertical half-wave dipoles of 0 dB peak gain by default.
+    is_antenna_chosen
+        Whether transmitters with an antenna of their own have `transmit_antenna` too.
     threads
         How many; all processors by default.
     max_memory_bytes
@@ -40,15 +44,16 @@ class TraceSettings:
     frequency_hz: float = 2.4e9
     transmit_antenna: Antenna = field(default_factory=HalfWaveDipole)
     receive_antenna: Antenna = field(default_factory=HalfWaveDipole)
+    is_antenna_chosen: bool = False
     threads: int | None = None
     max_memory_bytes: int | None = None
 
     def transmitter(self, survey: Survey, number: int) -> Transmitter:
         """Return a survey's transmitter as the tracer takes it."""
-        known = survey.transmitters[number]
-        return Transmitter(
-            known.position, known.power_dbm, self.frequency_hz, self.transmit_antenna
-        )
+        known, antenna = survey.transmitters[number], self.transmit_antenna
+        if known.antenna is not None and not self.is_antenna_chosen:
+            antenna = known.antenna
+        return Transmitter(known.position, known.power_dbm, self.frequency_hz, antenna)
 
 
 def traced_dbm(
@@ -75,26 +80,18 @@ def traced_dbm(
     power_dbm = np.full(len(survey), -np.inf)
     for k, known in enumerate(survey.transmitters):
         mine = survey.transmitter == k
-        transmitter = settings.transmitter(survey, k)
         try:
-            gain = _power_gain(scene, transmitter, survey.points[mine], settings)
+            power_dbm[mine] = received_power(
+                scene,
+                settings.transmitter(survey, k),
+                survey.points[mine],
+                settings.config,
+                receive_antenna=settings.receive_antenna,
+                threads=settings.threads,
+                max_memory_bytes=settings.max_memory_bytes,
+            )
         except SceneError as error:
             raise SceneError(f"transmitter {known.name!r}: {error}") from error
-        with np.errstate(divide="ignore"):
-            power_dbm[mine] = transmitter.power_dbm + 10.0 * np.log10(gain)
         if progress is not None:
             progress(k + 1, len(survey.transmitters))
     return power_dbm
-
-
-def _power_gain(
-    scene: Scene, transmitter: Transmitter, points: Floats, settings: TraceSettings
-) -> Floats:
-    """Received over transmitted power (n,)."""
-    config = settings.config
-    evaluation = evaluation_of(scene.slabs, transmitter, config, settings.receive_antenna)
-    with Workers(settings.threads) as workers:
-        guard = workers.guard(memory_limit(settings.max_memory_bytes))
-        tracing = workers.run(prepare, scene, transmitter.position, points, config, guard)
-        classes = path_classes(tracing.shared_by(workers.n))
-        return sum_paths(workers, classes, evaluation).power

@@ -47,6 +47,12 @@ RIGHT: dict[str, dict[str, str]] = {
     "maps": {"--out": "out"},
     "paths": {"plan": PLAN, "--to": "2,2,1.5", **QUICK},
     "validate": {"plan": PLAN, "survey": "survey.csv", "--transmitters": "transmitters.csv"},
+    "calibrate": {
+        "plan": PLAN,
+        "survey": "survey.csv",
+        "--transmitters": "transmitters.csv",
+        "--output": "out.toml",
+    },
     "example": {},
     "train": {"plan": PLAN, "--map": MAP, "--runs": "1", "--episodes": "2", "--agent": "location"},
     "fly": {"plan": PLAN, "trainings": "result.h5", "--map": MAP, "--output": "out.gif"},

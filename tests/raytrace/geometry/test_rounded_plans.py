@@ -5,7 +5,7 @@ new plans every time.
 """
 
 import os
-from dataclasses import fields, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -127,4 +127,4 @@ def trace(scene: Scene, places: Floats) -> Paths:
     """Return the paths between the first place and all others, in order of length."""
     paths = trace_paths(scene, Transmitter(tuple(places[0])), places[1:], TraceConfig(3, 1))
     order = np.lexsort((paths.length_m, paths.receiver))
-    return replace(paths, **{f.name: getattr(paths, f.name)[order] for f in fields(paths)})
+    return paths.rows(order)

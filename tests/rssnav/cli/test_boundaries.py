@@ -26,6 +26,7 @@ GIVEN = {
 SUFFIX = {
     "map": ".h5", "train": ".h5", "fly": ".gif", "plan new": ".toml", "plan import": ".toml",
     "plan check": ".toml", "plan export": ".glb", "plan show": ".png", "validate": ".html",
+    "calibrate": ".toml",
 }  # fmt: skip
 NUMBERS = ("nan", "inf", "-inf", "1e308", "-1e308", "1e999", "9" * 30, "9" * 5000, "x", "")
 NO_TEXT = ("", "  ")

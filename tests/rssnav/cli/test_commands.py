@@ -31,6 +31,7 @@ COMMANDS = (
     ("maps",),
     ("paths",),
     ("validate",),
+    ("calibrate",),
     ("example",),
     ("train",),
     ("explore",),

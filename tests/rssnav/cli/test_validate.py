@@ -15,9 +15,7 @@ def flat(tmp_path_factory):
     """The files of the measured flat, as arguments."""
     folder = tmp_path_factory.mktemp("flat") / "flat"
     done("example", "--out", folder)
-    return (
-        folder / "flat.toml", folder / "survey.csv", "--transmitters", folder / "transmitters.csv"
-    )  # fmt: skip
+    return folder / "flat.toml", folder / "survey.csv"
 
 
 def sigma(flat, *options: object) -> dict[str, float]:
@@ -70,7 +68,7 @@ def test_a_frequency_that_the_survey_denies_is_wrong_usage(flat) -> None:
 
 def test_a_transmitter_in_a_wall_is_named(flat, tmp_path) -> None:
     inside = written(tmp_path / "tx.csv", ["tx,x,y,z", *(f"{k},2.64,5,2" for k in range(1, 7))])
-    line = fault("validate", *flat[:2], "--transmitters", inside)
+    line = fault("validate", *flat, "--transmitters", inside)
     assert "transmitter '1': the transmitter at (2.64, 5.0, 2.0) stands in the wall" in line
 
 

@@ -10,6 +10,7 @@ import shapely
 from small_surveys import TRANSMITTERS, room, survey_of
 
 import floorplans
+from raytrace import HalfWaveDipole, Isotropic
 from rssnav.measurements.agreement import Agreement, floor_of, slope_of
 from rssnav.measurements.hold_out import by_space, by_transmitter
 from rssnav.measurements.predictors import (
@@ -20,6 +21,7 @@ from rssnav.measurements.predictors import (
     usual_models,
 )
 from rssnav.measurements.survey import SurveyError
+from rssnav.measurements.traced import TraceSettings
 from rssnav.measurements.validation import validate
 from rssnav.measurements.wall_count import walls_crossed
 
@@ -147,3 +149,12 @@ def test_doors_are_no_walls_and_lintels_are() -> None:
     aside = np.array([[0.0, 1.5, 0.0]])
     assert walls_crossed(PLAN, start + aside, end + aside) == [1]
     assert TRANSMITTERS[0].position[0] < 3.0
+
+
+def test_a_transmitter_of_the_plan_keeps_its_antenna_unless_one_is_chosen() -> None:
+    own = HalfWaveDipole(axis=(1.0, 0.0, 0.0))
+    survey = replace(scattered(), transmitters=(replace(TRANSMITTERS[0], antenna=own),))
+    settings = TraceSettings(transmit_antenna=Isotropic())
+    assert settings.transmitter(survey, 0).antenna == own
+    chosen = replace(settings, is_antenna_chosen=True)
+    assert chosen.transmitter(survey, 0).antenna == Isotropic()

@@ -1,0 +1,384 @@
+"""Derivatives of received powers with respect to properties of materials, by the adjoint method.
+
+The field of a path is a product of matrices (docs/theory.md, section 15). With the field before
+each interaction, and the receiver's amplitude carried backwards to behind it, one pass over a path
+gives the derivatives with respect to all its slabs.
+"""
+
+import math
+from typing import NamedTuple
+
+from raytrace.arrays import Floats, Ints
+from raytrace.kernels.compiling import jit
+from raytrace.kernels.field_tables import FieldTables, slab_lookup
+from raytrace.kernels.guard import Guard, is_stopped
+from raytrace.kernels.lanes import (
+    WIDTH,
+    ComplexLanes,
+    Lanes,
+    Mask,
+    any_of,
+    complex_of,
+    imag_of,
+    lane,
+    lanes_of,
+    load,
+    real_of,
+    store,
+    where,
+    where_complex,
+)
+from raytrace.kernels.step_gains import (
+    DIFFRACTED,
+    Dyad,
+    Pair,
+    StepLanes,
+    after_wall,
+    after_wedge,
+    chosen,
+    dyad_of,
+    into_edge,
+    launched,
+    out_of_edge,
+    received,
+    wedge_terms_of,
+)
+from raytrace.kernels.steps import (
+    ACROSS,
+    ALONG,
+    COSINE,
+    COSINE_N,
+    COSINE_O,
+    IN_ACROSS,
+    IN_ALONG,
+    MIXED_N,
+    MIXED_O,
+    MIXED_SHADOW,
+    OUT_ACROSS,
+    OUT_ALONG,
+    ROOT_2KL,
+    SHADOWS,
+    SPREADING,
+    SQUARED_N,
+    SQUARED_O,
+)
+
+
+class TableSlopes(NamedTuple):
+    """Derivatives of the tables of slabs with respect to properties of their materials.
+
+    Attributes
+    ----------
+    reflection, transmission
+        (n_slots, n_slabs * slab_rows, 4) as the tables of `FieldTables`: each slab depends on up to
+        `n_slots` properties; 0 for slots that a slab does not use.
+    """
+
+    reflection: Floats
+    transmission: Floats
+
+
+class PowerSums(NamedTuple):
+    """Sums over the paths of each receiver.
+
+    Attributes
+    ----------
+    power
+        (n,) received over transmitted power.
+    slopes
+        (n, n_slabs, n_slots) its derivatives.
+    """
+
+    power: Floats
+    slopes: Floats
+
+
+class Scratch(NamedTuple):
+    """Working arrays: fields (most + 1, 4, 8) before the interactions, and a row (8,)."""
+
+    fields: Floats
+    row: Floats
+
+
+class Work(NamedTuple):
+    """Eight paths in work: receivers and weights of all, the first of these, the first wedge."""
+
+    receiver: Ints
+    weight: Floats
+    i: int
+    w: int
+
+
+@jit(inline=True)
+def store_pair(rows: Floats, field: Pair) -> None:
+    """Write fields to four rows."""
+    store(rows[0], real_of(field.v))
+    store(rows[1], imag_of(field.v))
+    store(rows[2], real_of(field.h))
+    store(rows[3], imag_of(field.h))
+
+
+@jit(inline=True)
+def load_pair(rows: Floats) -> Pair:
+    """Fields of four rows."""
+    v = complex_of(load(rows[0]), load(rows[1]))
+    return Pair(v, complex_of(load(rows[2]), load(rows[3])))
+
+
+@jit(inline=True)
+def conjugate(x: ComplexLanes) -> ComplexLanes:
+    """Complex conjugates."""
+    return complex_of(real_of(x), imag_of(x) * -1.0)
+
+
+@jit(inner=True, fast=True)
+def add_slopes(
+    sums: PowerSums,
+    tables: tuple[Floats, int],
+    work: Work,
+    mask: Mask,
+    at: tuple[Lanes, Lanes],
+    sensitivity: tuple[ComplexLanes, ComplexLanes],
+    row: Floats,
+) -> None:
+    """Add the derivatives that one interaction of eight paths contributes.
+
+    Parameters
+    ----------
+    sums
+        Added to.
+    tables
+        Slopes of the table looked up, and its rows for each slab.
+    work, mask
+        The paths, and which of them have the interaction.
+    at
+        Slabs and cosines of incidence.
+    sensitivity
+        Derivatives of the powers with respect to both entries of the table.
+    row
+        Scratch.
+    """
+    slopes, rows = tables
+    for slot in range(len(slopes)):
+        tm, mix = slab_lookup(slopes[slot], rows, at[0], at[1])
+        change = real_of(tm * sensitivity[0] + mix * sensitivity[1])
+        store(row, where(mask, change, 0.0))
+        for j in range(WIDTH):
+            if row[j] != 0.0:
+                slab = int(lane(at[0], j))
+                sums.slopes[work.receiver[work.i + j], slab, slot] += row[j]
+
+
+@jit(inline=True, fast=True)
+def before_wall(tables: FieldTables, code: Lanes, frame: Floats, i: int, backward: Pair) -> Pair:
+    """Carry amplitudes backwards through a reflection or a transmission: the transpose."""
+    a, b = load(frame[ALONG, i:]), load(frame[ACROSS, i:])
+    cosine = load(frame[COSINE, i:])
+    v, h = backward
+    reflects, transmits = (code > 0.0) & (code < DIFFRACTED), code < 0.0
+    if any_of(reflects):
+        slab = where(reflects, code - 1.0, 0.0)
+        tm, mix = slab_lookup(tables.reflection, tables.slab_rows, slab, cosine)
+        t = (backward.v * a - backward.h * b) * mix
+        v = where_complex(reflects, t * a - tm * backward.v, v)
+        h = where_complex(reflects, tm * backward.h + t * b, h)
+    if any_of(transmits):
+        slab = where(transmits, -1.0 - code, 0.0)
+        tm, mix = slab_lookup(tables.transmission, tables.slab_rows, slab, cosine)
+        t = (backward.v * a + backward.h * b) * mix
+        v = where_complex(transmits, tm * backward.v + t * a, v)
+        h = where_complex(transmits, tm * backward.h + t * b, h)
+    return Pair(v, h)
+
+
+@jit(inline=True, fast=True)
+def add_wall(
+    sums: PowerSums,
+    slopes: TableSlopes,
+    rows: int,
+    code: Lanes,
+    frame: Floats,
+    work: Work,
+    fields: tuple[Pair, Pair],
+    row: Floats,
+) -> None:
+    """Add what reflections and transmissions contribute; `fields` are those before and behind."""
+    (x, y), i = fields, work.i
+    a, b = load(frame[ALONG, i:]), load(frame[ACROSS, i:])
+    cosine, along = load(frame[COSINE, i:]), x.v * a + x.h * b
+    reflects, transmits = (code > 0.0) & (code < DIFFRACTED), code < 0.0
+    if any_of(reflects):
+        at = where(reflects, code - 1.0, 0.0), cosine
+        sensitivity = y.h * x.h - y.v * x.v, along * (y.v * a - y.h * b)
+        table = slopes.reflection, rows
+        add_slopes(sums, table, work, reflects, at, sensitivity, row)
+    if any_of(transmits):
+        at = where(transmits, -1.0 - code, 0.0), cosine
+        sensitivity = y.h * x.h + y.v * x.v, along * (y.v * a + y.h * b)
+        table = slopes.transmission, rows
+        add_slopes(sums, table, work, transmits, at, sensitivity, row)
+
+
+@jit(inline=True, fast=True)
+def face_sensitivity(
+    coefficient: ComplexLanes,
+    turn: tuple[Lanes, Lanes, Lanes],
+    x: Pair,
+    y: Pair,
+) -> tuple[ComplexLanes, ComplexLanes]:
+    """Derivatives with respect to the reflection of a face, see `step_gains.face_part`.
+
+    Parameters
+    ----------
+    coefficient
+        What the face's reflection is multiplied by.
+    turn
+        Cosine of incidence; sin^2 and sin cos of the turn of the plane of incidence.
+    x, y
+        Field before the wedge, and amplitudes behind it, along the edge and across it.
+    """
+    cosine, squared, mixed = turn
+    both = y.v * x.v * (1.0 - squared) - y.h * x.h * squared
+    both = both + (y.v * x.h - y.h * x.v) * mixed
+    return (y.h * x.h - y.v * x.v) * coefficient, both * coefficient * (1.0 - cosine * cosine)
+
+
+@jit(inner=True, fast=True)
+def add_wedge(
+    sums: PowerSums,
+    slopes: TableSlopes,
+    rows: int,
+    lanes: StepLanes,
+    terms: tuple[ComplexLanes, ComplexLanes, ComplexLanes],
+    work: Work,
+    fields: tuple[Pair, Pair, Mask],
+    row: Floats,
+) -> None:
+    """Add what diffractions contribute; `fields` are along the edges and across them."""
+    x, y, mask = fields
+    wedge, face, w = lanes.wedge, lanes.face, work.w
+    incident, at_n, at_o = terms
+    cosine, squared = load(wedge[COSINE_O, w:]), load(wedge[SQUARED_O, w:])
+    at = load(face[0, w:]), cosine
+    turn = cosine, squared, load(wedge[MIXED_O, w:])
+    table = slopes.reflection, rows
+    add_slopes(sums, table, work, mask, at, face_sensitivity(at_o, turn, x, y), row)
+    has_n = mask & (load(wedge[COSINE_N, w:]) > 0.0)
+    if any_of(has_n):
+        n_cosine = load(wedge[COSINE_N, w:])
+        turn = n_cosine, load(wedge[SQUARED_N, w:]), load(wedge[MIXED_N, w:])
+        at_face = load(face[1, w:]), n_cosine
+        sensitivity = face_sensitivity(at_n, turn, x, y)
+        add_slopes(sums, table, work, has_n, at_face, sensitivity, row)
+    shadow, mixed = load(wedge[SHADOWS, w:]), load(wedge[MIXED_SHADOW, w:])
+    has_shadow = mask & (shadow > 0.0)
+    if any_of(has_shadow):
+        less = incident * (shadow * -1.0)
+        both = y.v * x.v * (1.0 - squared) + y.h * x.h * squared
+        both = both + (y.v * x.h + y.h * x.v) * mixed
+        sensitivity = (y.v * x.v + y.h * x.h) * less, both * less * (1.0 - cosine * cosine)
+        table = slopes.transmission, rows
+        add_slopes(sums, table, work, has_shadow, at, sensitivity, row)
+
+
+@jit(inline=True, fast=True)
+def before_wedge(wedge: Floats, w: int, dyad: Dyad, behind: Pair) -> Pair:
+    """Carry amplitudes along an edge and across it back to V and H before it: the transpose."""
+    along = dyad.along * behind.v + dyad.across_along * behind.h
+    across = dyad.along_across * behind.v + dyad.across * behind.h
+    a, c = load(wedge[IN_ALONG, w:]), load(wedge[IN_ACROSS, w:])
+    return Pair(along * a - across * c, along * c + across * a)
+
+
+@jit(inline=True, fast=True)
+def behind_wedge(wedge: Floats, w: int, backward: Pair) -> Pair:
+    """Carry amplitudes of V and H back to those along an edge and across it: the transpose."""
+    a, c = load(wedge[OUT_ALONG, w:]), load(wedge[OUT_ACROSS, w:])
+    return Pair(backward.v * a + backward.h * c, backward.h * a - backward.v * c)
+
+
+@jit(inline=True, fast=True)
+def forward(tables: FieldTables, lanes: StepLanes, i: int, w: int, fields: Floats) -> Pair:
+    """Fields at the ends of eight paths; `fields` is filled with those before each interaction."""
+    field = launched(tables, lanes.ends, i)
+    for k in range(len(lanes.code)):
+        store_pair(fields[k], field)
+        code = load(lanes.code[k, i:])
+        is_edge = code >= DIFFRACTED
+        if any_of(is_edge):
+            dyad = dyad_of(tables, lanes, w, wedge_terms_of(tables, lanes.wedge, w))
+            after = after_wedge(dyad, into_edge(lanes.wedge, w, field))
+            field = chosen(is_edge, out_of_edge(lanes.wedge, w, after), field)
+        if any_of((code < DIFFRACTED) & ((code > 0.0) | (code < 0.0))):
+            field = after_wall(tables, code, lanes.frame[k], i, field)
+    return field
+
+
+@jit(inline=True, fast=True)
+def size_of(tables: FieldTables, lanes: StepLanes, i: int, w: int) -> Lanes:
+    """Squared magnitudes of what multiplies received amplitudes, see `step_gains.scale_of`."""
+    spreading = load(lanes.ends[SPREADING, i:]) * (tables.wavelength / (4.0 * math.pi))
+    size = spreading * spreading
+    if w >= 0:
+        factor = tables.wavelength * (1.0 / (16.0 * math.pi * math.pi))
+        size = where(load(lanes.wedge[ROOT_2KL, w:]) > 0.0, size * factor, size)
+    return size
+
+
+@jit(allocates=False, fast=True)
+def add_power_slopes(
+    tables: FieldTables,
+    slopes: TableSlopes,
+    lanes: StepLanes,
+    receiver: Ints,
+    weight: Floats,
+    sums: PowerSums,
+    scratch: Scratch,
+    guard: Guard,
+) -> None:
+    """Add the powers of paths, and their derivatives, to those of their receivers.
+
+    Parameters
+    ----------
+    tables, slopes
+        Materials and antennas, and derivatives of the materials' tables.
+    lanes, receiver, weight
+        The paths; (n,) their receivers, and their weights, 0 for what fills up the last eight.
+    sums
+        Added to.
+    scratch, guard
+        Working arrays, and what may end the work.
+    """
+    rows, row = tables.slab_rows, scratch.row
+    one, zero = complex_of(lanes_of(1.0), 0.0), complex_of(lanes_of(0.0), 0.0)
+    undiffracted = lanes.code.shape[1] - lanes.wedge.shape[1]
+    for i in range(0, lanes.code.shape[1], WIDTH):
+        if is_stopped(guard):
+            break
+        w = i - undiffracted
+        work = Work(receiver, weight, i, w)
+        field = forward(tables, lanes, i, w, scratch.fields)
+        v = received(tables, lanes.ends, i, Pair(one, zero))
+        h = received(tables, lanes.ends, i, Pair(zero, one))
+        amplitude = v * field.v + h * field.h
+        size = size_of(tables, lanes, i, w) * load(weight[i:])
+        power = real_of(amplitude * conjugate(amplitude)) * size
+        store(row, power)
+        for j in range(WIDTH):
+            sums.power[receiver[i + j]] += row[j]
+        scale = conjugate(amplitude) * (size * 2.0)
+        y = Pair(v * scale, h * scale)
+        for back in range(len(lanes.code)):
+            k = len(lanes.code) - 1 - back
+            code, x = load(lanes.code[k, i:]), load_pair(scratch.fields[k])
+            is_edge = code >= DIFFRACTED
+            if any_of((code < DIFFRACTED) & ((code > 0.0) | (code < 0.0))):
+                add_wall(sums, slopes, rows, code, lanes.frame[k], work, (x, y), row)
+                y = before_wall(tables, code, lanes.frame[k], i, y)
+            if any_of(is_edge):
+                terms = wedge_terms_of(tables, lanes.wedge, w)
+                at_edge = into_edge(lanes.wedge, w, x)
+                behind = behind_wedge(lanes.wedge, w, y)
+                add_wedge(sums, slopes, rows, lanes, terms, work, (at_edge, behind, is_edge), row)
+                before = before_wedge(lanes.wedge, w, dyad_of(tables, lanes, w, terms), behind)
+                y = chosen(is_edge, before, y)

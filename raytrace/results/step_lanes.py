@@ -1,0 +1,69 @@
+"""Steps of paths in the layout of the kernels that evaluate them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raytrace.arrays import Complexes, Floats, Ints
+from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.lanes import WIDTH
+from raytrace.kernels.step_gains import DIFFRACTED, StepLanes, write_gains
+from raytrace.kernels.steps import DIFFRACTION, REFLECTION, TRANSMISSION, Steps
+
+
+def step_lanes(steps: Steps) -> tuple[StepLanes, Ints]:
+    """Sort paths by their interactions, those with a diffraction last, eight by eight.
+
+    Returns
+    -------
+    lanes
+        The steps of n paths, n a multiple of eight.
+    path
+        (n,) which path each is; -1 for what fills up the last eight.
+    """
+    code = _codes(steps)
+    is_diffracted = (steps.kind == DIFFRACTION).any(axis=1)
+    order = np.lexsort([*np.sign(code).T[::-1], is_diffracted])
+    path = np.concatenate(
+        [_filled(order[~is_diffracted[order]]), _filled(order[is_diffracted[order]])]
+    )
+    n_plain = len(_filled(np.flatnonzero(~is_diffracted)))
+    path_or_last = np.where(path < 0, path[_last_real(path)], path)
+    diffracted = path_or_last[n_plain:]
+    used = int((steps.kind != 0).sum(axis=1).max(initial=0))
+    return StepLanes(
+        np.ascontiguousarray(code[path_or_last, :used].T),
+        np.ascontiguousarray(steps.frame[path_or_last, :used].transpose(1, 2, 0)),
+        np.ascontiguousarray(steps.ends[path_or_last].T),
+        np.ascontiguousarray(steps.wedge[diffracted].T),
+        np.ascontiguousarray(np.maximum(steps.face[diffracted], 0).T.astype(np.float64)),
+    ), path
+
+
+def _codes(steps: Steps) -> Floats:
+    """Codes (n, most) of interactions, see `StepLanes.code`."""
+    number = steps.slab + 1.0
+    code = np.where(steps.kind == REFLECTION, number, 0.0)
+    code = np.where(steps.kind == TRANSMISSION, -number, code)
+    return np.where(steps.kind == DIFFRACTION, DIFFRACTED, code)
+
+
+def _filled(order: Ints) -> Ints:
+    """Fill a list up to a multiple of eight with -1."""
+    return np.concatenate([order, np.full(-len(order) % WIDTH, -1, dtype=np.int64)])
+
+
+def _last_real(path: Ints) -> Ints:
+    """Index (n,) of the last path at or before each place that is none of those that fill up."""
+    return np.maximum.accumulate(np.where(path >= 0, np.arange(len(path)), 0))
+
+
+def gains_of(tables: FieldTables, steps: Steps) -> Complexes:
+    """Compute gains (n,), both antennas included, from steps."""
+    lanes, path = step_lanes(steps)
+    real, imag = np.zeros(len(path)), np.zeros(len(path))
+    write_gains(tables, lanes, 0, len(path), real, imag)
+    gains = np.zeros(len(steps.kind), dtype=np.complex128)
+    is_real = path >= 0
+    gains[path[is_real]] = (real + 1j * imag)[is_real]
+    return gains

@@ -1,0 +1,200 @@
+"""Paths that are kept after a trace, to be evaluated for other materials, antennas, frequencies.
+
+Their geometry is traced once. An evaluation then goes through the steps of the paths alone
+(`raytrace.kernels.step_gains`), for gains that a new trace would give too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from raytrace.arrays import Bools, Floats, Ints
+from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.guard import Guard, no_guard
+from raytrace.kernels.lanes import WIDTH
+from raytrace.kernels.step_derivatives import (
+    PowerSums,
+    Scratch,
+    TableSlopes,
+    add_power_slopes,
+)
+from raytrace.kernels.step_gains import StepLanes, write_gains
+from raytrace.kernels.steps import PATH_BYTES, STEP_BYTES, joined
+from raytrace.results.step_lanes import step_lanes
+from raytrace.solver.limits import check_whole, taking
+from raytrace.solver.path_class import Evaluation, KeptRecord, PathClass
+from raytrace.solver.workers import Workers
+
+KEPT = "the kept paths"
+
+
+@dataclass(frozen=True, eq=False)
+class KeptPaths:
+    """Paths from a transmitter to n points.
+
+    Attributes
+    ----------
+    n_points
+        How many points there are.
+    lanes
+        The steps of the paths.
+    receiver, weight
+        (n_lanes,) which point each path reaches, and its weight; 0 for what fills up the lanes.
+    left_out
+        (n,) fraction of each point's power that the paths which were not kept had.
+    """
+
+    n_points: int
+    lanes: StepLanes
+    receiver: Ints
+    weight: Floats
+    left_out: Floats
+
+    def __len__(self) -> int:
+        """Number of paths."""
+        return int(np.count_nonzero(self.weight))
+
+    def at(self, points: Ints) -> KeptPaths:
+        """Return the paths of some of the points, numbered in their order."""
+        number = np.full(self.n_points, -1, dtype=np.int64)
+        number[points] = np.arange(len(points))
+        receiver = number[self.receiver]
+        is_kept = (receiver >= 0) & (self.weight > 0.0)
+        first = self.lanes.code.shape[1] - self.lanes.wedge.shape[1]
+        plain, diffracted = (
+            _filled_up(np.flatnonzero(part) + begin)
+            for part, begin in ((is_kept[:first], 0), (is_kept[first:], first))
+        )
+        path = np.concatenate([plain, diffracted])
+        lanes = StepLanes(
+            *(np.ascontiguousarray(a[..., path]) for a in self.lanes[:3]),
+            *(np.ascontiguousarray(a[..., diffracted - first]) for a in self.lanes[3:]),
+        )
+        weight = np.where(_is_first(path), self.weight[path], 0.0)
+        return KeptPaths(len(points), lanes, receiver[path], weight, self.left_out[points])
+
+    def powers(self, tables: FieldTables) -> Floats:
+        """Sum the powers of the paths at each point (n,) [fraction of the transmitted]."""
+        real, imag = np.empty(len(self.receiver)), np.empty(len(self.receiver))
+        write_gains(tables, self.lanes, 0, len(self.receiver), real, imag)
+        power = np.minimum(real * real + imag * imag, 1.0)
+        sums = np.bincount(self.receiver, self.weight * power, self.n_points)
+        return sums.astype(np.float64)
+
+    def powers_and_slopes(
+        self, tables: FieldTables, slopes: TableSlopes, guard: Guard | None = None
+    ) -> tuple[Floats, Floats]:
+        """Sum the powers of the paths at each point, and their derivatives.
+
+        Parameters
+        ----------
+        tables, slopes
+            Materials and antennas, and the derivatives of the materials' tables.
+        guard
+            What may end the work; nothing by default.
+
+        Returns
+        -------
+        powers, derivatives
+            (n,) and (n, n_slabs, n_slots).
+        """
+        n_slots, n_rows = slopes.reflection.shape[:2]
+        sums = PowerSums(
+            np.zeros(self.n_points),
+            np.zeros((self.n_points, n_rows // tables.slab_rows, n_slots)),
+        )
+        scratch = Scratch(np.empty((len(self.lanes.code), 4, WIDTH)), np.empty(WIDTH))
+        guard = guard or no_guard()
+        work = self.lanes, self.receiver, self.weight
+        add_power_slopes(tables, slopes, *work, sums, scratch, guard)
+        check_whole(guard, True, KEPT)
+        return sums.power, sums.slopes
+
+
+def keep_paths(
+    workers: Workers,
+    classes: list[PathClass],
+    evaluation: Evaluation,
+    n_points: int,
+    max_left_out: float,
+    guard: Guard,
+) -> KeptPaths:
+    """Find paths and keep the strongest of each point.
+
+    Parameters
+    ----------
+    workers
+        The threads; the result does not depend on how many there are.
+    classes
+        What to find them with.
+    evaluation
+        What their powers are computed with.
+    n_points
+        How many points there are.
+    max_left_out
+        Largest fraction of a point's power that is left out; 0 keeps all paths.
+    guard
+        What may end the work, with the memory that is left.
+    """
+    running = [workers.submit(path_class.keep_paths, evaluation) for path_class in classes]
+    records = [workers.result(future) for future in running]
+    rows, left_out = _chosen(records, n_points, max_left_out)
+    n_max = max((len(r) for r in rows), default=0)
+    _check_memory(guard, sum(map(len, rows)))
+    running = [workers.submit(r.steps_of, chosen) for r, chosen in zip(records, rows, strict=True)]
+    steps = joined([workers.result(future) for future in running])
+    lanes, path = workers.run(step_lanes, steps)
+    receiver = np.concatenate([r.receiver[k] for r, k in zip(records, rows, strict=True)])
+    weight = np.concatenate([r.weight[k] for r, k in zip(records, rows, strict=True)])
+    is_real = path >= 0
+    of_path = np.maximum(path, 0)
+    return KeptPaths(
+        n_points,
+        lanes,
+        np.where(is_real, receiver[of_path] if n_max else 0, 0),
+        np.where(is_real, weight[of_path] if n_max else 0.0, 0.0),
+        left_out,
+    )
+
+
+def _filled_up(path: Ints) -> Ints:
+    """Repeat the last number of a list until there are a multiple of eight."""
+    return np.concatenate([path, np.repeat(path[-1:], -len(path) % WIDTH)])
+
+
+def _is_first(path: Ints) -> Bools:
+    """Say of a list that rises but for its end which numbers are not repeated (n,)."""
+    return np.diff(path, prepend=-1) != 0
+
+
+MOST_STEPS = 12
+"""Interactions of a path for which memory is set aside; few paths have more."""
+
+
+def _check_memory(guard: Guard, n_paths: int) -> None:
+    """Check that so many paths may be kept: their steps, and a copy of them in lanes."""
+    taking(guard, 2 * n_paths * (PATH_BYTES + MOST_STEPS * STEP_BYTES), KEPT)
+
+
+def _chosen(
+    records: list[KeptRecord], n_points: int, max_left_out: float
+) -> tuple[list[Ints], Floats]:
+    """Choose the strongest paths of each point; return rows of each record, and what is left."""
+    receiver = np.concatenate([record.receiver for record in records])
+    power = np.concatenate([record.power for record in records])
+    order = np.lexsort([power, receiver])
+    running = np.cumsum(power[order])
+    begin = np.searchsorted(receiver[order], np.arange(n_points + 1))
+    total = np.bincount(receiver, power, n_points)
+    before = np.concatenate([[0.0], running])[begin[:-1]]
+    weaker = running - before[receiver[order]]
+    is_kept = np.empty(len(power), dtype=bool)
+    is_kept[order] = weaker > max_left_out * total[receiver[order]]
+    if max_left_out == 0.0:
+        is_kept[:] = True
+    lost = np.bincount(receiver, np.where(is_kept, 0.0, power), n_points)
+    ends = np.cumsum([len(record.receiver) for record in records])[:-1]
+    rows = [np.flatnonzero(part) for part in np.split(is_kept, ends)]
+    return rows, lost / np.where(total > 0.0, total, 1.0)

@@ -1,0 +1,304 @@
+"""A plan calibrated with a survey: what was fitted, and how far traced RSS is off before and after.
+
+Everything that is said of the fit is computed from readings that were held out: the whole procedure
+is repeated without them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from floorplans import FloorPlan
+from raytrace import Scene
+from raytrace.arrays import Bools, Floats, Ints
+from rssnav.measurements.agreement import Agreement
+from rssnav.measurements.calibration import (
+    Calibrated,
+    TracedSurvey,
+    fit_what_is_told,
+    residuals_db,
+)
+from rssnav.measurements.hold_out import SQUARE_M, Fold, by_space, by_transmitter
+from rssnav.measurements.material_values import MaterialValue, material_values, plan_with
+from rssnav.measurements.predictors import OffsetPer, offset_groups
+from rssnav.measurements.survey import Survey, SurveyError
+from rssnav.measurements.traced import TraceSettings
+from rssnav.progress import Progress
+
+CURVE_PLACES = (5, 10, 20, 40)
+CURVE_DRAWS = 3
+FAR = 2.5
+"""A fitted value this many standard deviations of its prior away is flagged as doubtful."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """Agreement with readings that were held out, before and after a calibration."""
+
+    before: Agreement
+    after: Agreement
+
+
+@dataclass(frozen=True)
+class CurvePoint:
+    """What a calibration with few places gives at all others, on average over random draws.
+
+    Attributes
+    ----------
+    n_places
+        Places that are fitted to.
+    before_db, after_db
+        Sigma at the other places, with the plan's materials and with fitted ones; the offset is
+        fitted to the same few places [dB].
+    """
+
+    n_places: int
+    before_db: float
+    after_db: float
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """A calibrated plan.
+
+    Attributes
+    ----------
+    plan
+        The plan with fitted materials.
+    found
+        What was fitted to all readings.
+    space, transmitter
+        Agreement with readings held out by space and by transmitter; None where there is one
+        transmitter.
+    curve
+        How many places are needed.
+    doubts
+        Fitted values that are unusual, in words.
+    """
+
+    plan: FloorPlan
+    found: Calibrated
+    space: Change
+    transmitter: Change | None
+    curve: tuple[CurvePoint, ...]
+    doubts: tuple[str, ...]
+
+    @property
+    def is_better(self) -> bool:
+        """Whether readings that were held out by space are predicted better than before."""
+        return self.space.after.sigma_db < self.space.before.sigma_db
+
+    def summary(self) -> dict[str, Any]:
+        """Return the numbers, for programs."""
+        held_out = {"space": self.space, "transmitter": self.transmitter}
+        return {
+            "held_out_sigma_db": {
+                name: None
+                if change is None
+                else {"before": change.before.sigma_db, "after": change.after.sigma_db}
+                for name, change in held_out.items()
+            },
+            "fitted": [
+                {
+                    "material": value.material,
+                    "property": value.kind,
+                    "before": value.quantity(value.prior),
+                    "after": value.quantity(fitted),
+                    "low": value.quantity(fitted - 2.0 * deviation),
+                    "high": value.quantity(fitted + 2.0 * deviation),
+                }
+                for value, fitted, deviation in self.rows()
+            ],
+            "not_told": [
+                {
+                    "material": told.value.material,
+                    "property": told.value.kind,
+                    "sensitivity_db": told.sensitivity_db,
+                    "narrowing": told.narrowing,
+                }
+                for told in self.found.not_told
+            ],
+            "places_needed": [
+                {"places": p.n_places, "before_db": p.before_db, "after_db": p.after_db}
+                for p in self.curve
+            ],
+            "doubts": list(self.doubts),
+        }
+
+    def rows(self) -> list[tuple[MaterialValue, float, float]]:
+        """Return each fitted property with its value and its standard deviation."""
+        fit = self.found.fit
+        values, deviation = map(float, fit.values), map(float, fit.deviation)
+        return list(zip(self.found.told, values, deviation, strict=True))
+
+
+def calibrate(
+    plan: FloorPlan,
+    scene: Scene,
+    survey: Survey,
+    settings: TraceSettings,
+    *,
+    offsets: OffsetPer = "one",
+    materials: Sequence[str] | None = None,
+    square_m: float = SQUARE_M,
+    progress: Progress | None = None,
+) -> Calibration:
+    """Fit a plan's materials to a survey.
+
+    Parameters
+    ----------
+    plan, scene, survey, settings
+        The building, the readings, and how they are traced.
+    offsets
+        What a constant offset is fitted for.
+    materials
+        Names of the materials; all dielectrics of the plan by default.
+    square_m
+        Side of the squares that are held out together [m].
+    progress
+        Called with the number of finished parts of the work and of all parts.
+
+    Raises
+    ------
+    SurveyError
+        Where the survey tells nothing of the materials, or nothing can be held out.
+    """
+    folds, others = by_space(survey, square_m), by_transmitter(survey)
+    if len(folds) < 2:
+        raise SurveyError(
+            f"all places lie in squares of one colour of a chequerboard of {square_m:g} m: "
+            "expected a smaller square, or more places",
+            survey.path,
+        )
+    steps = _Steps(len(survey.transmitters) + 1 + len(folds) + len(others) + 1, progress)
+    of = material_values(scene.slabs, settings.frequency_hz, materials)
+    traced = TracedSurvey.of(scene, survey, settings, lambda done, _: steps.reached(done))
+    groups = offset_groups(survey, offsets)
+    found = fit_what_is_told(traced, of, groups)
+    steps.advance()
+    if not found.told:
+        raise SurveyError(
+            "the readings do not tell the properties of any material: "
+            + "; ".join(f"{t.value.material}, {t.value.kind}" for t in found.not_told),
+            survey.path,
+        )
+    space = _change(traced, of, groups, folds, steps)
+    transmitter = _change(traced, of, groups, others, steps) if others else None
+    curve = _curve(traced, of, groups)
+    steps.advance()
+    return Calibration(
+        plan_with(plan, scene.slabs, found.told, found.fit.values, settings.frequency_hz),
+        found,
+        space,
+        transmitter,
+        curve,
+        _doubts(found),
+    )
+
+
+class _Steps:
+    """Parts of the work that are done."""
+
+    def __init__(self, total: int, progress: Progress | None) -> None:
+        self._total, self._progress, self._done = total, progress, 0
+
+    def reached(self, done: int) -> None:
+        self._done = done
+        if self._progress is not None:
+            self._progress(done, self._total)
+
+    def advance(self) -> None:
+        self.reached(self._done + 1)
+
+
+def _predicted(
+    traced: TracedSurvey, of: Sequence[MaterialValue], values: Floats, groups: Ints, fit: Bools
+) -> Floats:
+    """Predict all readings (n,) [dBm] with offsets that were fitted to some of them."""
+    level, slopes = traced.levels_db(of, values, slopes=False)
+    part = traced.survey.rows(fit)
+    *_, offset = residuals_db(part, groups[fit], level[fit], slopes[fit])
+    known = np.full(int(groups.max(initial=0)) + 1, np.mean(offset))
+    known[groups[fit]] = offset
+    return level + known[groups]
+
+
+def _change(
+    traced: TracedSurvey,
+    of: Sequence[MaterialValue],
+    groups: Ints,
+    folds: tuple[Fold, ...],
+    steps: _Steps,
+) -> Change:
+    """Repeat a calibration without the readings of each fold, and predict these."""
+    survey = traced.survey
+    before, after = np.full((2, len(survey)), -np.inf)
+    for fold in folds:
+        found = fit_what_is_told(traced.rows(fold.fit), of, groups[fold.fit])
+        plan_values = np.array([value.prior for value in found.told])
+        for target, values in ((before, plan_values), (after, found.fit.values)):
+            predicted = _predicted(traced, found.told, values, groups, fold.fit)
+            target[fold.test] = predicted[fold.test]
+        steps.advance()
+    tested = np.logical_or.reduce([fold.test for fold in folds])
+    found_both = [Agreement.of(survey.rss_dbm, p, tested) for p in (before, after)]
+    if found_both[0] is None or found_both[1] is None:
+        raise SurveyError("no path reaches any reading: allow more transmissions", survey.path)
+    return Change(found_both[0], found_both[1])
+
+
+def _curve(
+    traced: TracedSurvey, of: Sequence[MaterialValue], groups: Ints
+) -> tuple[CurvePoint, ...]:
+    """Calibrate with the readings at a few random places, and predict those at all others."""
+    survey, random = traced.survey, np.random.default_rng(0)
+    _, place = np.unique(survey.points[:, :2].round(1), axis=0, return_inverse=True)
+    n_places = int(place.max()) + 1
+    points: list[CurvePoint] = []
+    for n in CURVE_PLACES:
+        if 2 * n > n_places:
+            break
+        squares = np.array([_draw(traced, of, groups, place, random.permutation(n_places)[:n])
+                            for _ in range(CURVE_DRAWS)])  # fmt: skip
+        before, after = np.sqrt(squares.mean(axis=0))
+        points.append(CurvePoint(n, float(before), float(after)))
+    return tuple(points)
+
+
+def _draw(
+    traced: TracedSurvey,
+    of: Sequence[MaterialValue],
+    groups: Ints,
+    place: Ints,
+    chosen: Ints,
+) -> tuple[float, float]:
+    """Mean squares of residuals [dB^2] at other places, with the plan's and fitted materials."""
+    survey = traced.survey
+    fit = np.isin(place, chosen) & ~survey.is_censored
+    test = ~np.isin(place, chosen) & ~survey.is_censored
+    found = fit_what_is_told(traced.rows(fit), of, groups[fit])
+    squares: list[float] = []
+    for values in (np.array([value.prior for value in found.told]), found.fit.values):
+        predicted = _predicted(traced, found.told, values, groups, fit)
+        agreement = Agreement.of(survey.rss_dbm, predicted, test)
+        squares.append(np.inf if agreement is None else agreement.sigma_db**2)
+    return squares[0], squares[1]
+
+
+def _doubts(found: Calibrated) -> tuple[str, ...]:
+    """Say which fitted values are unusual for a building material."""
+    doubts: list[str] = []
+    for value, fitted in zip(found.told, found.fit.values, strict=True):
+        away = (fitted - value.prior) / value.spread
+        if abs(away) > FAR:
+            unit = " S/m" if value.kind != "permittivity" else ""
+            doubts.append(
+                f"{value.material}: a {value.kind} of {value.quantity(float(fitted)):.3g}{unit} is "
+                f"{abs(away):.1f} standard deviations of building materials from that of the plan: "
+                "furniture, thickness or doors may be wrong instead"
+            )
+    return tuple(doubts)
