@@ -153,9 +153,9 @@ def _plan_data(collection: Mapping[str, Any]) -> Json:
             data[kind] = points
         elif kind == "transmitter":
             data.setdefault("transmitters", []).append({**table, "position": points})
-        elif kind == "wall":
+        elif kind in ("wall", "clutter"):
             index = table.pop("wall")
-            walls[index] = {**table, "points": points}
+            walls[index] = {"kind": kind, **table, "points": points}
         else:
             wall = walls[table.pop("wall")]
             wall.setdefault("openings", []).append({"kind": kind, **table})

@@ -16,7 +16,7 @@ from shapely.geometry import Polygon
 
 from atomicfiles import atomic_write
 from floorplans.checks.materials import check_materials
-from floorplans.checks.walls import check_openings, opening_kind
+from floorplans.checks.walls import check_openings, opening_kind, wall_kind
 from floorplans.errors import Place, PlanError, format_place
 from floorplans.frame import PlanFrame
 from floorplans.georeference import GeoOrigin
@@ -39,7 +39,7 @@ PLAN_KEYS = (
 ORIGIN_KEYS = ("longitude_deg", "latitude_deg", "rotation_deg")
 FRAME_KEYS = ("x_m", "y_m", "rotation_deg")
 DEFAULTS_KEYS = ("material", "thickness_m")
-WALL_KEYS = ("points", "arc", "material", "thickness_m", "height_m", "openings")
+WALL_KEYS = ("kind", "points", "arc", "material", "thickness_m", "height_m", "openings")
 OPENING_KEYS = ("kind", "offset_m", "width_m", "sill_m", "head_m", "material", "thickness_m")
 
 MAX_CHARACTERS = 4_000_000
@@ -266,6 +266,7 @@ def _read_wall(table: Table, defaults: Table, ceiling_m: float, own: Own) -> lis
     height_m = table.number("height_m", ceiling_m)
     openings = [_read_opening(row, own) for row in table.tables("openings", OPENING_KEYS)]
     lengths = [dist(start, end) for start, end in pairwise(points)]
+    kind = wall_kind(table.text("kind", "wall"), (*table.place, "kind"))
     whole = Wall((0.0, 0.0), (sum(lengths), 0.0), material, thickness_m, height_m, tuple(openings))
     check_openings(whole, own, table.place)
     if "arc" in table.data:
@@ -273,7 +274,7 @@ def _read_wall(table: Table, defaults: Table, ceiling_m: float, own: Own) -> lis
         openings = [part for opening in openings for part in _split_at(begins[1:-1], opening)]
     by_piece = _distribute_openings(openings, lengths, points, table.place)
     return [
-        Wall(start, end, material, thickness_m, height_m, own_openings)
+        Wall(start, end, material, thickness_m, height_m, own_openings, kind)
         for (start, end), own_openings in zip(pairwise(points), by_piece, strict=True)
     ]
 

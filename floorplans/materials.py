@@ -74,6 +74,9 @@ class PlanMaterial:
         Built-in dielectrics or the plan's own, one behind the other; empty for a dielectric.
     colour : str or None
         #rrggbb to draw it in.
+    loss_db, loss_frequency_hz : float or None
+        Loss of a wave that crosses a wall of it at right angles [dB], as measured at a frequency
+        [Hz], in place of a conductivity; both or neither.
     """
 
     name: str
@@ -83,6 +86,8 @@ class PlanMaterial:
     d: float = 0.0
     layers: tuple[MaterialLayer, ...] = ()
     colour: str | None = None
+    loss_db: float | None = None
+    loss_frequency_hz: float | None = None
 
     @property
     def thickness_m(self) -> float | None:
@@ -97,6 +102,9 @@ PARAMETERS = {
     "d": Range(-10.0, 10.0),
 }
 """Ranges of the parameters of a dielectric."""
+
+LOSS = {"loss_db": Range(0.0, 100.0, "dB"), "loss_frequency_hz": Range(1e6, 1e12, "Hz")}
+"""Ranges of a measured loss and of its frequency."""
 
 Own = Mapping[str, PlanMaterial]
 """A plan's own materials by name."""

@@ -43,12 +43,15 @@ class WallMesh:
     face_material : (n_faces,) int64
         Index into `materials`.
     materials : tuple of SheetMaterial
-        Distinct ones, in order of first use.
+        Those of walls and those of clutter, each once, in order of first use.
+    clutter : (n_materials,) bool
+        Whether it is the material of clutter, whose edges do not diffract.
     """
 
     mesh: trimesh.Trimesh
     face_material: NDArray[np.int64]
     materials: tuple[SheetMaterial, ...]
+    clutter: NDArray[np.bool_]
 
 
 def build_mesh(plan: UncheckedPlan) -> WallMesh:
@@ -63,27 +66,30 @@ def build_mesh(plan: UncheckedPlan) -> WallMesh:
     WallMesh
     """
     sheets = list(_sheets(plan))
-    materials = tuple(dict.fromkeys(material for material, _ in sheets))
-    indices = np.array([materials.index(material) for material, _ in sheets], dtype=np.int64)
-    face_material = np.repeat(indices, [len(triangles) for _, triangles in sheets])
-    vertices = np.concatenate([triangles for _, triangles in sheets]).reshape(-1, 3)
+    kinds = {kind: number for number, kind in enumerate(dict.fromkeys(s[:2] for s in sheets))}
+    materials = tuple(material for material, _ in kinds)
+    indices = np.array([kinds[sheet[:2]] for sheet in sheets], dtype=np.int64)
+    face_material = np.repeat(indices, [len(triangles) for _, _, triangles in sheets])
+    vertices = np.concatenate([triangles for _, _, triangles in sheets]).reshape(-1, 3)
     mesh = trimesh.Trimesh(
         vertices=vertices,
         faces=np.arange(len(vertices)).reshape(-1, 3),
         face_colors=_colours(plan, materials)[face_material],
         process=False,
     )
-    return WallMesh(mesh, face_material, materials)
+    return WallMesh(mesh, face_material, materials, np.array([clutter for _, clutter in kinds]))
 
 
-def _sheets(plan: UncheckedPlan) -> Iterator[tuple[SheetMaterial, Triangles]]:
+def _sheets(plan: UncheckedPlan) -> Iterator[tuple[SheetMaterial, bool, Triangles]]:
+    """Material of each sheet, whether it is clutter, and its triangles."""
     for wall in plan.walls:
         for panel in panels(wall):
-            yield SheetMaterial(panel.material, panel.thickness_m), _panel_triangles(wall, panel)
+            material = SheetMaterial(panel.material, panel.thickness_m)
+            yield material, wall.kind == "clutter", _panel_triangles(wall, panel)
     floor = slab_triangles(plan.outline, 0.0)
-    yield SheetMaterial(plan.floor_material, plan.floor_thickness_m), floor
+    yield SheetMaterial(plan.floor_material, plan.floor_thickness_m), False, floor
     ceiling = slab_triangles(plan.outline, plan.height_m)[:, ::-1]
-    yield SheetMaterial(plan.ceiling_material, plan.ceiling_thickness_m), ceiling
+    yield SheetMaterial(plan.ceiling_material, plan.ceiling_thickness_m), False, ceiling
 
 
 def panel_corners(wall: Wall, panel: Panel) -> NDArray[np.float64]:

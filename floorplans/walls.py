@@ -17,6 +17,7 @@ import shapely
 from numpy.typing import NDArray
 
 OpeningKind = Literal["door", "window", "passage"]
+WallKind = Literal["wall", "clutter"]
 
 TOLERANCE_M = 1e-6
 """Points nearer than this are the same point [m]."""
@@ -79,6 +80,9 @@ class Wall:
         Thickness, and height above the floor [m].
     openings : tuple of Opening
         They may lie above each other (a window above a door) but not overlap.
+    kind : {"wall", "clutter"}
+        Clutter is shelves, wardrobes and the like: it reflects and transmits like a wall, but its
+        edges do not diffract.
     """
 
     start: Point
@@ -87,6 +91,7 @@ class Wall:
     thickness_m: float
     height_m: float
     openings: tuple[Opening, ...] = ()
+    kind: WallKind = "wall"
 
     @property
     def length_m(self) -> float:
@@ -200,7 +205,7 @@ def solid_heights(walls: Sequence[Wall], point: Point) -> list[Interval]:
     """
     near = shapely.dwithin(centre_lines(walls), shapely.points(point), TOLERANCE_M)
     spans: list[Interval] = []
-    for wall in (walls[k] for k in np.flatnonzero(near)):
+    for wall in (walls[k] for k in np.flatnonzero(near).tolist()):
         along = np.subtract(wall.end, wall.start) / wall.length_m
         s = float(np.subtract(point, wall.start) @ along)
         spans += [

@@ -67,6 +67,7 @@ class Scene:
         materials: Sequence[tuple[str | Material, float]],
         *,
         edition: str = DEFAULT_EDITION,
+        edgeless: Sequence[int] | NDArray[np.int64] = (),
     ) -> "Scene":
         """Read a mesh of vertical sheets, a floor and a ceiling.
 
@@ -82,6 +83,8 @@ class Scene:
             or ceiling its first layer is the one the room sees.
         edition
             Of ITU-R P.2040, for materials given by name.
+        edgeless
+            Indices of materials of clutter: edges between two faces of them do not diffract.
 
         Raises
         ------
@@ -91,7 +94,9 @@ class Scene:
         """
         slabs = tuple(Slab.of(material, thickness, edition) for material, thickness in materials)
         _check_indices(face_material, len(mesh.faces), len(slabs))
-        face_material, slabs = _with_slabs_of_walls(mesh, face_material, slabs)
+        clutter: set[int] = set(np.asarray(edgeless).tolist())
+        face_material, slabs, copied = _with_slabs_of_walls(mesh, face_material, slabs)
+        clutter |= {copy for copy, original in copied.items() if original in clutter}
         sheets = read_sheets(mesh, face_material)
         cells = cut_into_cells(sheets)
         return cls(
@@ -101,8 +106,12 @@ class Scene:
             sheets.floor_material,
             sheets.ceiling_material,
             cells,
-            find_vertical_edges(cells, sheets.height_m),
-            find_horizontal_edges(cells),
+            tuple(
+                edge
+                for edge in find_vertical_edges(cells, sheets.height_m)
+                if not {edge.o_slab, edge.n_slab} <= clutter
+            ),
+            tuple(e for e in find_horizontal_edges(cells) if e.material not in clutter),
             edition,
         )
 
@@ -124,13 +133,17 @@ def _check_indices(face_material: NDArray[np.int64], n_faces: int, n_slabs: int)
 
 def _with_slabs_of_walls(
     mesh: trimesh.Trimesh, face_material: NDArray[np.int64], slabs: tuple[Slab, ...]
-) -> tuple[NDArray[np.int64], tuple[Slab, ...]]:
-    """Append slabs for walls whose sides differ: one sheet has one reflection coefficient."""
+) -> tuple[NDArray[np.int64], tuple[Slab, ...], dict[int, int]]:
+    """Append slabs for walls whose sides differ: one sheet has one reflection coefficient.
+
+    Also returns the number of the original of each appended slab.
+    """
     vertical = np.abs(mesh.face_normals[:, 2]) < 0.5
-    found = np.array(face_material)
+    found, copied = np.array(face_material), dict[int, int]()
     for index in np.unique(found[vertical]):
         wall = slabs[index].as_wall()
         if wall is not slabs[index]:
             found[vertical & (found == index)] = len(slabs)
+            copied[len(slabs)] = int(index)
             slabs = (*slabs, wall)
-    return found, slabs
+    return found, slabs, copied

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, fields
 
+import numpy as np
+
 from floorplans import FloorPlan, PlanMaterial
 from raytrace import Dielectric, Layer, Layered, Material, Scene, SceneError
 from raytrace.radio.itu import DEFAULT_EDITION
@@ -42,8 +44,14 @@ def scene_of(plan: FloorPlan, edition: str | None = None) -> Scene:
     edition = edition_of(plan, edition)
     try:
         own = _own_materials(plan, edition)
-        materials = [(own.get(name, name), thickness_m) for name, thickness_m in walls.materials]
-        return Scene.from_mesh(walls.mesh, walls.face_material, materials, edition=edition)
+        materials = [(_material(plan, own, *sheet), sheet.thickness_m) for sheet in walls.materials]
+        return Scene.from_mesh(
+            walls.mesh,
+            walls.face_material,
+            materials,
+            edition=edition,
+            edgeless=np.flatnonzero(walls.clutter),
+        )
     except SceneError as error:
         raise SceneError(f"plan {plan.name!r}: {error}") from error
 
@@ -78,6 +86,16 @@ class PlanScene:
             for field in fields(plan)
             if field.name not in _NOT_OF_THE_SCENE
         )
+
+
+def _material(
+    plan: FloorPlan, own: dict[str, Material], name: str, thickness_m: float
+) -> Material | str:
+    """Material of a sheet; a measured loss is that of the sheet's thickness."""
+    told = plan.own_materials.get(name)
+    if told is None or told.loss_db is None or told.loss_frequency_hz is None:
+        return own.get(name, name)
+    return Dielectric.of_loss(name, told.a, told.loss_db, told.loss_frequency_hz, thickness_m)
 
 
 def _own_materials(plan: FloorPlan, edition: str) -> dict[str, Material]:

@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from floorplans.errors import Place, PlanError, unknown_name
 from floorplans.materials import (
+    LOSS,
     MATERIAL_EDITIONS,
     MATERIALS,
     NOT_IN_LAYERS,
@@ -43,6 +44,7 @@ def _check_own(material: PlanMaterial, own: Own, place: Place) -> None:
         )
     for key, allowed in PARAMETERS.items():
         check_number(getattr(material, key), allowed, (*place, key))
+    _check_loss(material, place)
     if material.colour is not None and not _is_colour(material.colour):
         raise PlanError("expected #rrggbb", (*place, "colour"), material.colour)
     check_count(material.layers, MAX_LAYERS, (*place, "layers"))
@@ -50,9 +52,31 @@ def _check_own(material: PlanMaterial, own: Own, place: Place) -> None:
         _check_layer(layer, own, (*place, "layers", index))
 
 
+def _check_loss(material: PlanMaterial, place: Place) -> None:
+    given = [key for key in LOSS if getattr(material, key) is not None]
+    if not given:
+        return
+    if len(given) < len(LOSS):
+        missing = next(key for key in LOSS if key not in given)
+        raise PlanError(
+            f"the key is missing; {given[0]} needs it: expected a number from {LOSS[missing]}",
+            (*place, missing),
+        )
+    for key, allowed in LOSS.items():
+        check_number(getattr(material, key), allowed, (*place, key))
+    if material.layers or material.b or material.c or material.d:
+        raise PlanError(
+            "a measured loss takes the place of conductivity, laws and layers; leave those out",
+            (*place, "loss_db"),
+            material.loss_db,
+        )
+
+
 def _check_layer(layer: MaterialLayer, own: Own, place: Place) -> None:
     known = tuple(name for name in MATERIALS if name not in NOT_IN_LAYERS)
-    known += tuple(name for name, material in own.items() if not material.layers)
+    known += tuple(
+        n for n, material in own.items() if not material.layers and material.loss_db is None
+    )
     if layer.material not in known:
         problem = unknown_name("material of a layer", layer.material, known)
         raise PlanError(problem, (*place, "material"), layer.material)

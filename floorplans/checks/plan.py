@@ -217,7 +217,8 @@ def _parallel_pairs(lines: NDArray[np.object_]) -> Iterator[tuple[int, int]]:
 def _open_edges(plan: UncheckedPlan) -> Iterator[PlanError]:
     """Yield where no full-height walls without unfilled openings cover the outline."""
     edge = plan.outline.boundary
-    full = [wall for wall in plan.walls if wall.height_m > plan.height_m - TOLERANCE_M]
+    high_m = plan.height_m - TOLERANCE_M
+    full = [wall for wall in plan.walls if wall.kind == "wall" and wall.height_m > high_m]
     near = np.flatnonzero(shapely.dwithin(centre_lines(full), edge, 2 * TOLERANCE_M))
     closed = [
         (full[k].point_at(low), full[k].point_at(high))

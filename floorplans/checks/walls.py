@@ -15,8 +15,9 @@ from floorplans.values import (
     check_count,
     check_number,
 )
-from floorplans.walls import TOLERANCE_M, Opening, OpeningKind, Wall
+from floorplans.walls import TOLERANCE_M, Opening, OpeningKind, Wall, WallKind
 
+WALL_KINDS: tuple[WallKind, ...] = get_args(WallKind)
 OPENING_KINDS: tuple[OpeningKind, ...] = get_args(OpeningKind)
 
 
@@ -118,6 +119,14 @@ def overlapping_pair(openings: Sequence[Opening]) -> tuple[int, int] | None:
         here.insert(at, (new.sill_m, k))
         heappush(ends, (new.end_m, k))
     return None
+
+
+def wall_kind(name: str, place: Place) -> WallKind:
+    """Return the kind of wall with this name; raise `PlanError` if there is none."""
+    for kind in WALL_KINDS:
+        if kind == name:
+            return kind
+    raise PlanError(unknown_name("kind of wall", name, WALL_KINDS), place, name)
 
 
 def opening_kind(name: str, place: Place) -> OpeningKind:

@@ -177,7 +177,8 @@ def _walls_in_openings(walls: _Walls) -> Iterator[Finding]:
 
 def _slivers_and_closed_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
     """Yield regions too narrow to be rooms, and rooms without a door."""
-    separating = [wall for wall in plan.walls if wall.height_m >= min(ROOM_WALL_M, plan.height_m)]
+    least_m = min(ROOM_WALL_M, plan.height_m)
+    separating = [w for w in plan.walls if w.kind == "wall" and w.height_m >= least_m]
     doors = [
         Point(wall.point_at(opening.offset_m + opening.width_m / 2))
         for wall in separating

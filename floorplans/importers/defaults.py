@@ -9,8 +9,8 @@ CLOSED_GAP_M = 8.0
 
 WALL_THICKNESS_M = 0.1
 WALL_MATERIAL = "plasterboard"
-THICK_WALL_MATERIAL, THICK_M = "concrete", 0.18
-"""Of walls known to be at least as thick [m], where the file names no material."""
+THICK_WALL_MATERIAL, THICK_M = "brick", 0.18
+"""Of walls known to be at least as thick [m], where the file names no material: masonry."""
 
 DOOR_HEAD_M = 2.1
 DOOR_MATERIAL, DOOR_THICKNESS_M = "wood", 0.04

@@ -191,7 +191,7 @@ def _joined(
 def _alike(a: Wall, b: Wall, thickness_fraction: float) -> bool:
     allowed_m = max(_SAME_THICKNESS_M, thickness_fraction * max(a.thickness_m, b.thickness_m))
     return (
-        a.material == b.material
+        (a.material, a.kind) == (b.material, b.kind)
         and abs(a.height_m - b.height_m) < TOLERANCE_M
         and abs(a.thickness_m - b.thickness_m) <= allowed_m
     )
@@ -237,8 +237,9 @@ def _same(walls: Sequence[Wall], group: Sequence[Wall]) -> bool:
     def near(a: Wall, b: Wall) -> bool:
         straight = max(dist(a.start, b.start), dist(a.end, b.end))
         turned = max(dist(a.start, b.end), dist(a.end, b.start))
-        same_properties = (a.material, a.thickness_m, a.height_m) == (
+        same_properties = (a.material, a.kind, a.thickness_m, a.height_m) == (
             b.material,
+            b.kind,
             b.thickness_m,
             b.height_m,
         )

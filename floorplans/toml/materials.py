@@ -9,7 +9,8 @@ from floorplans.toml.values import toml_number, toml_text
 
 SIMPLE_KEYS = ("relative_permittivity", "conductivity")
 LAW_KEYS = ("a", "b", "c", "d")
-MATERIAL_KEYS = (*SIMPLE_KEYS, *LAW_KEYS, "layers", "colour")
+LOSS_KEYS = ("loss_db", "loss_frequency_hz")
+MATERIAL_KEYS = (*SIMPLE_KEYS, *LOSS_KEYS, *LAW_KEYS, "layers", "colour")
 LAYER_KEYS = ("material", "thickness_m")
 
 
@@ -21,15 +22,23 @@ def read_materials(plan: Table) -> tuple[PlanMaterial, ...]:
 
 def _read(table: Table, name: str) -> PlanMaterial:
     colour = table.optional_text("colour")
-    simple, law = (any(key in table.data for key in keys) for keys in (SIMPLE_KEYS, LAW_KEYS))
-    if [simple, law, "layers" in table.data].count(True) != 1:
+    simple, law, loss = (
+        any(key in table.data for key in keys) for keys in (SIMPLE_KEYS, LAW_KEYS, LOSS_KEYS)
+    )
+    if [simple, law, "layers" in table.data].count(True) != 1 or (loss and not simple):
         raise PlanError(
-            "expected one of: relative_permittivity and conductivity [S/m]; a, b, c, d; or layers",
+            "expected one of: relative_permittivity and conductivity [S/m] or loss_db; a, b, c, d; "
+            "or layers",
             table.place,
         )
     if simple:
         a, c = table.number("relative_permittivity"), table.number("conductivity", 0.0)
-        return PlanMaterial(name, a, c=c, colour=colour)
+        if loss and "conductivity" in table.data:
+            raise PlanError(
+                "loss_db takes its place; leave one out", (*table.place, "conductivity")
+            )
+        measured = (table.number(key) if loss else None for key in LOSS_KEYS)
+        return PlanMaterial(name, a, 0.0, c, 0.0, (), colour, *measured)
     if law:
         a, b = table.number("a"), table.number("b", 0.0)
         c, d = table.number("c", 0.0), table.number("d", 0.0)
@@ -56,6 +65,10 @@ def _lines(material: PlanMaterial) -> Iterator[str]:
         yield "]"
     elif material.b or material.d:
         yield from (f"{key} = {toml_number(getattr(material, key))}" for key in LAW_KEYS)
+    elif material.loss_db is not None and material.loss_frequency_hz is not None:
+        yield f"relative_permittivity = {toml_number(material.a)}"
+        yield f"loss_db = {toml_number(material.loss_db)}"
+        yield f"loss_frequency_hz = {toml_number(material.loss_frequency_hz)}"
     else:
         yield f"relative_permittivity = {toml_number(material.a)}"
         yield f"conductivity = {toml_number(material.c)}"

@@ -62,6 +62,8 @@ def _origin(origin: GeoOrigin) -> Iterator[str]:
 
 def _wall(wall: Wall, ceiling_m: float) -> Iterator[str]:
     yield "[[walls]]"
+    if wall.kind != "wall":
+        yield f"kind = {_text(wall.kind)}"
     yield f"points = [{_point(wall.start)}, {_point(wall.end)}]"
     yield f"material = {_text(wall.material)}"
     yield f"thickness_m = {_number(wall.thickness_m)}"

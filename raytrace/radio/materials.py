@@ -18,6 +18,10 @@ from raytrace.errors import SceneError
 from raytrace.radio.itu import DEFAULT_EDITION, TABLES, Row
 from raytrace.radio.slabs import SlabCoefficients, slab_coefficients, stack_coefficients
 
+_LOSS_TOLERANCE_DB = 1e-6
+_HALVINGS = 48
+"""Halvings of the interval that holds a conductivity."""
+
 
 @dataclass(frozen=True)
 class Dielectric:
@@ -44,6 +48,62 @@ class Dielectric:
     ) -> "Dielectric":
         """Make a material that follows one law at all frequencies."""
         return cls(name, (Row(0.0, inf, a, b, c, d),))
+
+    @classmethod
+    def of_loss(
+        cls,
+        name: str,
+        permittivity: float,
+        loss_db: float,
+        frequency_hz: float,
+        thickness_m: float,
+    ) -> "Dielectric":
+        """Make the material of a slab whose transmission loss was measured.
+
+        The conductivity, the same at all frequencies, is the one for which a wave that crosses the
+        slab at normal incidence loses `loss_db` at `frequency_hz`, reflection at both faces
+        included. Reflection follows from it and from the permittivity, as for any dielectric.
+
+        Parameters
+        ----------
+        name
+            Its name.
+        permittivity
+            Relative permittivity [1].
+        loss_db
+            Loss in transmission [dB].
+        frequency_hz
+            At which it was measured [Hz].
+        thickness_m
+            Of the slab [m].
+
+        Raises
+        ------
+        SceneError
+            Where a slab without any conductivity loses more, by reflection alone.
+        """
+
+        def of(conductivity: float) -> Dielectric:
+            return cls.of_law(name, permittivity, c=conductivity)
+
+        def excess_db(conductivity: float) -> float:
+            slab = of(conductivity).coefficients(thickness_m, frequency_hz, np.ones(1))
+            return -20.0 * float(np.log10(max(abs(slab.t_te[0]), 1e-300))) - loss_db
+
+        if excess_db(0.0) > _LOSS_TOLERANCE_DB:
+            least = excess_db(0.0) + loss_db
+            raise SceneError(
+                f"{name} of thickness {thickness_m:g} m: loss_db = {loss_db:g}, but reflection "
+                f"alone loses {least:.2f} dB at {frequency_hz * 1e-9:g} GHz; expected more, or a "
+                "lower relative permittivity"
+            )
+        least, most = 0.0, 1e-3
+        while excess_db(most) < 0.0:
+            most *= 2.0
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (least + most)
+            least, most = (middle, most) if excess_db(middle) < 0.0 else (least, middle)
+        return of(most)
 
     def complex_permittivity(self, frequency_hz: float) -> complex:
         """Relative permittivity eps_r - j sigma / (omega eps_0), for e^(+j omega t).
