@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from math import cos, dist, hypot, radians
 
+import shapely
+
 from floorplans.importers.draft import RawOpening
-from floorplans.repair.geometry import direction
-from floorplans.walls import TOLERANCE_M, Point, Wall
+from floorplans.repair.geometry import direction, tidy_point
+from floorplans.walls import TOLERANCE_M, Point, Wall, centre_lines
 
 _SAME_END_M = 0.01
 _MIN_COSINE = cos(radians(40.0))
@@ -16,6 +19,10 @@ _MIN_COSINE = cos(radians(40.0))
 _MIN_ALONG = 0.3
 """Least cosine between a chord and its opening."""
 _MIN_PART_M = 0.01
+_MEET_M = 0.12
+"""Farthest that an end of an opening is from the wall or opening it meets [m]."""
+_CLEAR_M = 0.05
+"""An opening whose middle is nearer to a wall lies in it [m]."""
 
 
 def parts_on_chords(
@@ -92,3 +99,77 @@ def _dot(a: Point, b: Point) -> float:
 def _unit(vector: Point) -> Point:
     length = max(hypot(*vector), TOLERANCE_M)
     return (vector[0] / length, vector[1] / length)
+
+
+def glazed_chords(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[Wall, ...]:
+    """Walls for openings that stand between the ends of walls, alone or in a chain.
+
+    Where a curved wall is drawn interrupted at its windows, nothing is left of a chord that a
+    window fills. Both ends of such an opening meet an end of a wall or of another such opening.
+
+    Parameters
+    ----------
+    walls : sequence of Wall
+    openings : sequence of RawOpening
+
+    Returns
+    -------
+    tuple of Wall
+        Each like a wall that its chain begins at.
+    """
+    tree = shapely.STRtree(centre_lines(walls))
+    loose = [
+        opening
+        for opening in openings
+        if opening.direction is not None
+        and not len(tree.query(shapely.Point(opening.centre), "dwithin", distance=_CLEAR_M))
+    ]
+    at_wall = {end: wall for wall in walls for end in (wall.start, wall.end)}
+    new: list[Wall] = []
+    chains = _chains([_ends(opening) for opening in loose])
+    for chain in chains:
+        stops = [_nearest(end, at_wall) for end in (chain[0], chain[-1])]
+        if None in stops:
+            continue
+        first, last = stops
+        assert first is not None
+        assert last is not None
+        points = [first, *chain[1:-1], last]
+        new += [replace(at_wall[first], start=a, end=b, openings=()) for a, b in pairwise(points)]
+    return tuple(new)
+
+
+def _ends(opening: RawOpening) -> tuple[Point, Point]:
+    assert opening.direction is not None
+    (x, y), (u, v) = opening.centre, _unit(opening.direction)
+    half = opening.width_m / 2
+    return tidy_point(x - half * u, y - half * v), tidy_point(x + half * u, y + half * v)
+
+
+def _chains(sections: Sequence[tuple[Point, Point]]) -> list[list[Point]]:
+    """Corners of the chains that sections make, whose ends meet within `_MEET_M`."""
+    left = list(sections)
+    chains: list[list[Point]] = []
+    while left:
+        chain = list(left.pop())
+        grows = True
+        while grows:
+            grows = False
+            for k, (a, b) in enumerate(left):
+                if dist(chain[-1], a) < _MEET_M or dist(chain[-1], b) < _MEET_M:
+                    chain.append(b if dist(chain[-1], a) < _MEET_M else a)
+                elif dist(chain[0], b) < _MEET_M or dist(chain[0], a) < _MEET_M:
+                    chain.insert(0, a if dist(chain[0], b) < _MEET_M else b)
+                else:
+                    continue
+                del left[k]
+                grows = True
+                break
+        chains.append(chain)
+    return chains
+
+
+def _nearest(point: Point, ends: Mapping[Point, Wall]) -> Point | None:
+    """End of a wall that a point meets; None if there is none."""
+    near = min(ends, key=lambda end: dist(end, point))
+    return near if dist(near, point) < _MEET_M else None

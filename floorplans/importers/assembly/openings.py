@@ -10,7 +10,7 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from floorplans.importers.assembly.chords import parts_on_chords
+from floorplans.importers.assembly.chords import glazed_chords, parts_on_chords
 from floorplans.importers.centrelines.double_doors import LEAF_GAP_M, same_kind
 from floorplans.importers.defaults import (
     DOOR_HEAD_M,
@@ -53,7 +53,8 @@ def close_gaps(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[W
     """Close the gaps of walls that are interrupted at doors and windows.
 
     A gap is closed where an opening reaches from the end of a wall to the next collinear wall or to
-    one across. The new wall has the properties of the longest collinear one.
+    one across. The new wall has the properties of the longest collinear one. Chords of a curved
+    wall that are glazed from end to end are closed as well (`glazed_chords`).
 
     Parameters
     ----------
@@ -76,7 +77,8 @@ def close_gaps(walls: Sequence[Wall], openings: Sequence[RawOpening]) -> tuple[W
         wall = _wall_in_gap(opening, [walls[i] for i in near])
         if wall is not None:
             new.append(wall)
-    return (*walls, *new)
+    closed = (*walls, *new)
+    return (*closed, *glazed_chords(closed, openings))
 
 
 def _wall_in_gap(opening: RawOpening, near: Sequence[Wall]) -> Wall | None:

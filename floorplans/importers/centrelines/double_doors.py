@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import hypot
+from math import hypot, radians, sin
 
 from floorplans.importers.draft import RawOpening
 from floorplans.repair.geometry import along_across, direction
@@ -12,6 +12,10 @@ from floorplans.walls import Opening, Point, Wall
 
 LEAF_GAP_M = 0.15
 """Openings of one kind nearer than this are one [m]."""
+
+
+_BENT_SINE = sin(radians(3.0))
+"""Sine of the largest angle between two leaves; windows of a curved wall are not joined."""
 
 
 def same_kind(a: RawOpening | Opening, b: RawOpening | Opening) -> bool:
@@ -51,7 +55,7 @@ def _joined(a: RawOpening, b: RawOpening) -> RawOpening | None:
     s, across = along_across(along, b.centre)
     reach_m = (a.width_m + b.width_m) / 2
     if (
-        not b.is_along(direction(along))
+        abs(_sine(direction(along), b.direction)) > _BENT_SINE
         or abs(across) > LEAF_GAP_M
         or abs(s) > reach_m + LEAF_GAP_M
     ):
@@ -59,6 +63,10 @@ def _joined(a: RawOpening, b: RawOpening) -> RawOpening | None:
     low = min(-a.width_m, 2 * s - b.width_m) / 2
     high = max(a.width_m, 2 * s + b.width_m) / 2
     return replace(a, centre=along.point_at((low + high) / 2), width_m=high - low)
+
+
+def _sine(a: Point, b: Point) -> float:
+    return (a[0] * b[1] - a[1] * b[0]) / (hypot(*a) * hypot(*b))
 
 
 def _step_along(point: Point, along: Point) -> Point:

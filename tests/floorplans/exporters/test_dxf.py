@@ -5,6 +5,7 @@ from dataclasses import replace
 import ezdxf
 import numpy as np
 import pytest
+from small_plans import ROOM
 
 import floorplans
 from floorplans import FloorPlan
@@ -74,3 +75,18 @@ def test_layers_and_blocks_name_what_they_are(tmp_path) -> None:
 def test_names_from_everywhere_are_written(tmp_path) -> None:
     plan = replace(floorplans.load("flat"), name="Büro 東京")
     assert reimported(plan, tmp_path).outline.area == pytest.approx(plan.outline.area, rel=1e-3)
+
+
+def test_window_over_whole_chords_of_a_curved_wall_comes_back(tmp_path) -> None:
+    arc = 'points = [[6, 4], [0, 4]]\narc = [3, 5]\nmaterial = "brick"\nthickness_m = 0.2\n'
+    glass = 'openings = [{ kind = "window", offset_m = 1.2, width_m = 4, sill_m = 0.9, head_m = 2, '
+    straight, rest = "[6, 4], [0, 4], [0, 0]]", "[0, 4], [0, 0], [6, 0], [6, 4]]"
+    text = ROOM.replace(f"points = [[0, 0], [6, 0], {straight}", f"points = [{rest}")
+    text = text.partition("[[walls]]\npoints = [[3, 0]")[0]
+    plan = floorplans.loads(f'{text}[[walls]]\n{arc}{glass}material = "glass" }}]\n')
+    (path,) = export(plan, tmp_path / "bow.dxf")
+    again = import_plan(path).plan
+    assert again.outline.symmetric_difference(plan.outline).area < 0.02
+    widths = [sum(o.width_m for w in p.walls for o in w.openings) for p in (plan, again)]
+    assert widths[0] == pytest.approx(4.0)
+    assert widths[1] == pytest.approx(4.0, abs=0.1)
