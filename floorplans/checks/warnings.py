@@ -115,11 +115,7 @@ def _walls_that_almost_meet(walls: _Walls) -> Iterator[Finding]:
 
 def _walls_side_by_side(walls: _Walls) -> Iterator[Finding]:
     """Yield walls that run beside each other within their thickness: duplicate walls."""
-    tree = shapely.STRtree(walls.lines)
-    reach = max((wall.thickness_m for wall in walls.walls), default=0.0)
-    for first, second in tree.query(walls.lines, predicate="dwithin", distance=reach).T:
-        if first >= second:
-            continue
+    for first, second in _parallel_neighbours(walls):
         overlap = _overlap(walls.walls[first], walls.walls[second])
         if overlap is not None and overlap[1] > TOLERANCE_M:
             length, apart, at = overlap
@@ -130,6 +126,18 @@ def _walls_side_by_side(walls: _Walls) -> Iterator[Finding]:
                 f"{apart:.4g} m off: one wall is one sheet on its centre line",
                 at,
             )
+
+
+def _parallel_neighbours(walls: _Walls) -> list[tuple[int, int]]:
+    """Pairs of nearly parallel walls that are no farther apart than the thickest is thick."""
+    reach = max((wall.thickness_m for wall in walls.walls), default=0.0)
+    pairs = shapely.STRtree(walls.lines).query(walls.lines, "dwithin", distance=reach)
+    first, second = pairs[:, pairs[0] < pairs[1]]
+    along = np.array([np.subtract(wall.end, wall.start) for wall in walls.walls]).reshape(-1, 2)
+    along /= np.hypot(along[:, 0], along[:, 1])[:, None]
+    (x0, y0), (x1, y1) = along[first].T, along[second].T
+    kept = np.abs(x0 * y1 - y0 * x1) <= 1.01 * _PARALLEL_SINE
+    return list(zip(first[kept].tolist(), second[kept].tolist(), strict=True))
 
 
 def _overlap(a: Wall, b: Wall) -> tuple[float, float, PlanPoint] | None:

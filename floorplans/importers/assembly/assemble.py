@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import shapely
@@ -14,6 +14,7 @@ from floorplans.importers.assembly.assumptions import assumptions
 from floorplans.importers.assembly.building import Building, buildings
 from floorplans.importers.assembly.draft_plan import unusable
 from floorplans.importers.assembly.map_fit import fit_of
+from floorplans.importers.assembly.openings import NO_WALL
 from floorplans.importers.assembly.source_and_start import (
     SOURCE_HEIGHT_M,
     SourceAndStart,
@@ -38,6 +39,10 @@ from floorplans.walls import TOLERANCE_M, Wall
 MUCH_OUTSIDE = 0.05
 """Fraction of the walls' length outside the outline from which on the user is warned."""
 
+MANY_LOST = 0.25
+"""Fraction of the openings without a wall from which on the user is warned."""
+
+_NO_WALL = tuple(NO_WALL.format(kind=kind) for kind in ("door", "passage", "window"))
 _GIVEN_BY_USER = ("name", "height_m", "floor_material", "ceiling_material", "source", "start")
 
 
@@ -122,21 +127,26 @@ def _record(
         layers=draft.layers,
         changes=building.changes,
         notes=(*draft.notes, *fit.notes),
-        warnings=(*draft.warnings, *_outside(draft, building), *fit.warnings),
+        warnings=(*draft.warnings, *_losses(draft, building), *fit.warnings),
         original=original,
     )
 
 
-def _outside(draft: Draft, building: Building) -> list[str]:
-    """Warn of much wall outside the outline."""
+def _losses(draft: Draft, building: Building) -> Iterator[str]:
+    """Warn of much wall outside the outline, and of many openings without a wall."""
     outside = 1.0 - building.enclosed
-    if outside < MUCH_OUTSIDE:
-        return []
-    total_m = sum(LineString([wall.start, wall.end]).length for wall in draft.walls)
-    return [
-        f"{100 * outside:.0f} % of the walls, about {outside * total_m:.3g} m, lie outside the "
-        "outline and are left out: another building, a fence, or a part that is open"
-    ]
+    if outside >= MUCH_OUTSIDE:
+        total_m = sum(LineString([wall.start, wall.end]).length for wall in draft.walls)
+        yield (
+            f"{100 * outside:.0f} % of the walls, about {outside * total_m:.3g} m, lie outside the "
+            "outline and are left out: another building, a fence, or a part that is open"
+        )
+    n_lost = sum(change.text in _NO_WALL for change in building.changes)
+    if n_lost > MANY_LOST * len(draft.openings):
+        yield (
+            f"{n_lost} of {len(draft.openings)} doors and windows lie in no wall and are left out: "
+            "look whether their walls were read"
+        )
 
 
 def _check(draft: Draft, options: ImportOptions) -> None:

@@ -32,6 +32,9 @@ from floorplans.repair.geometry import (
 from floorplans.walls import TOLERANCE_M, Opening, Wall, centre_lines
 from floorplans.walls import Point as Point2
 
+NO_WALL = "{kind} that lies in no wall dropped"
+"""Text of the change that drops an opening."""
+
 _BESIDE_M = 0.3
 """Largest distance from a wall's body to the middle of its opening [m]."""
 _FRAME_M = 0.4
@@ -186,9 +189,7 @@ def attach_openings(
         near = tree.query(Point(raw.centre), "dwithin", distance=far_m).tolist()
         hosts = {i: parts for i in near if (parts := _parts_on(raw, i, walls, near))}
         if not hosts:
-            changes.append(
-                Change("dropped", f"{raw.kind} that lies in no wall dropped", raw.centre)
-            )
+            changes.append(Change("dropped", NO_WALL.format(kind=raw.kind), raw.centre))
             continue
         i = min(hosts, key=lambda i: (abs(along_across(walls[i], raw.centre)[1]), i))
         for k, part in hosts[i]:

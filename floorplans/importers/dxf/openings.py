@@ -128,6 +128,8 @@ def as_windows_outside(openings: Sequence[RawOpening], area: BaseGeometry) -> li
     area : shapely geometry
         Of the walls [m].
     """
+    if all(opening.kind != "passage" for opening in openings):
+        return list(openings)
     closed = shapely.get_parts(area.buffer(_SHUT_M))
     blocks = [Polygon(part.exterior) for part in closed if isinstance(part, Polygon)]
     inner = shapely.union_all(blocks).buffer(-_SHUT_M - _MAX_DEPTH_M / 2)

@@ -22,6 +22,9 @@ OPENING_WIDTH_M: Mapping[OpeningKind, float] = {"door": 0.9, "window": 1.2, "pas
 _OPENING_KINDS: tuple[OpeningKind, ...] = ("door", "passage", "window")
 _MAX_FILL_M = 0.7
 """A door or window drawn as an area up to this thick fills its gap in the wall [m]."""
+_AT_WALL_M = 0.3
+"""The border of a room lies at a wall that is no farther away [m]."""
+_MOSTLY = 0.4
 _BENT = 0.7
 """An area that fills less than this fraction of the box around it is bent."""
 
@@ -45,10 +48,12 @@ class Placed:
 
 
 def walls_of(placed: Sequence[Placed], tolerance_m: float) -> list[RawWall]:
-    """Return the walls of all features: areas, lines, or otherwise those between rooms."""
+    """Return the walls of all features: areas, lines, and those between rooms that have none."""
     areas = list(_areas(placed, "wall"))
     lines = [wall for p in _of_kind(placed, "wall") for wall in _line_walls(p)]
-    rooms = [] if areas else list(_areas(placed, "room"))
+    rooms = list(_areas(placed, "room"))
+    if rooms and _have_walls([polygon for _, polygon in rooms], [polygon for _, polygon in areas]):
+        rooms = []
     walls = _area_walls(placed, areas, tolerance_m) + lines
     if rooms:
         open_ = [p.what.is_open for p, _ in rooms]
@@ -56,6 +61,15 @@ def walls_of(placed: Sequence[Placed], tolerance_m: float) -> list[RawWall]:
     elif not areas:
         walls += [w for p, outline in _areas(placed, "outline") for w in _ring(p, outline)]
     return walls
+
+
+def _have_walls(rooms: Sequence[Polygon], areas: Sequence[Polygon]) -> bool:
+    """Whether walls are drawn along most of the borders of rooms, and not only a pillar in them."""
+    if not areas:
+        return False
+    borders = shapely.union_all([room.boundary for room in rooms])
+    beside = borders.intersection(shapely.union_all(areas).buffer(_AT_WALL_M))
+    return beside.length > _MOSTLY * borders.length
 
 
 def openings_of(placed: Sequence[Placed], tolerance_m: float) -> list[RawOpening]:

@@ -244,6 +244,14 @@ def test_an_opening_in_no_wall_is_dropped_and_reported():
     ]
 
 
+def test_many_openings_without_a_wall_are_a_warning():
+    lost = tuple(door(12 + k, 25) for k in range(3))
+    on_wall = tuple(door(12 + k, 20) for k in range(8))
+    assert not made(replace(HALL, openings=(*on_wall, *lost[:1]))).warnings
+    (sentence,) = made(replace(HALL, openings=(*on_wall[:4], *lost))).warnings
+    assert sentence.startswith("3 of 7 doors and windows lie in no wall")
+
+
 @pytest.mark.parametrize("direction", [None, (1.0, 0.0)])
 def test_walls_broken_at_a_door_become_one(direction: tuple[float, float] | None):
     halves = (RawWall((10, 24), (14, 24), 0.1), RawWall((14.9, 24), (22, 24), 0.1))

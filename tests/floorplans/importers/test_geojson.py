@@ -411,3 +411,16 @@ def test_mutated_bytes_are_plans_or_plan_errors(tmp_path) -> None:
                 import_plan(tmp_path / name, ImportOptions(level="ground"))
             except PlanError:
                 continue
+
+
+def test_a_pillar_among_rooms_does_not_replace_the_walls_between_them(imported) -> None:
+    rooms = [box(0, 0, 6, 5), box(6, 0, 12, 5), box(0, 5, 12, 8)]
+    plan = imported(
+        collection(
+            *(feature(in_degrees(room), type="room") for room in rooms),
+            feature(in_degrees(box(5, 6, 5.6, 6.6)), type="wall"),
+            feature(in_degrees(LineString([(2, 5), (3, 5)])), type="door"),
+        )
+    )
+    assert plan.outline.area == pytest.approx(96, rel=0.01)
+    assert sum(len(wall.openings) for wall in plan.walls) == 1
