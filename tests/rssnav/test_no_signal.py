@@ -41,6 +41,7 @@ RULES = [
     IntervalStates((-130.0, -30.0)),
 ]
 ANY_RULE = pytest.mark.parametrize("rule", RULES, ids=["exact", "tolerance", "intervals", "two"])
+LINE_OF_SIGHT = ("--reflections", "0", "--diffractions", "0", "--transmissions", "0")
 DARK = slice(5, 8)  # columns of the map, the start's among them
 
 readings = st.just(-math.inf) | st.floats(-140.0, -20.0) | st.just(SENSITIVITY_DBM)
@@ -153,7 +154,7 @@ def test_a_drawing_is_imported_mapped_trained_and_flown(tmp_path) -> None:
     floorplans.save(replace(hall, walls=walls), tmp_path / "drawn.toml")
     done("plan", "export", tmp_path / "drawn.toml", "-o", drawing)
     done("plan", "import", drawing, "-o", plan)
-    done("map", plan, "-o", radio_map, "--reflections", "0", "--diffractions", "0")
+    done("map", plan, "-o", radio_map, *LINE_OF_SIGHT)
     trained = tmp_path / "rss.h5"
     done("train", plan, "--map", radio_map, "--runs", 3, "--episodes", 50, "-o", trained)
     world = TrainingResult.load(trained).world
