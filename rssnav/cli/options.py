@@ -57,7 +57,7 @@ Preset = Annotated[
     typer.Option(
         "--preset",
         help="paper: 6 reflections, opaque walls, vertical dipoles; building: 3 reflections, "
-        "transmission, antennas of unknown orientation. Other options override it.",
+        "transmission, isotropic antennas. Other options override it.",
         show_default="paper for built-in plans, otherwise building",
     ),
 ]
