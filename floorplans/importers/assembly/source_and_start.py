@@ -10,7 +10,7 @@ import shapely
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
-from shapely.geometry import MultiLineString, Polygon
+from shapely.geometry import Polygon
 
 from floorplans.walls import Wall, solid_segments
 
@@ -71,7 +71,7 @@ def choose_source_and_start(
     if not len(cells):
         inside = outline.representative_point()
         return SourceAndStart(source or (inside.x, inside.y), (inside.x, inside.y), 0.0)
-    clear_m = np.asarray(shapely.distance(shapely.points(cells), MultiLineString(list(solid))))
+    clear_m = _clearances(cells, solid)
     _, labels = connected_components(steps, directed=False)
     if source is None:
         among = labels == np.bincount(labels).argmax()
@@ -88,6 +88,17 @@ def choose_source_and_start(
     return SourceAndStart(
         source, (float(cells[far][0]), float(cells[far][1])), float(distance_m[far])
     )
+
+
+def _clearances(cells: NDArray[np.float64], solid: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance of each cell's centre from the nearest wall [m], (n,); inf without walls."""
+    clear_m = np.full(len(cells), np.inf)
+    walls = shapely.STRtree(np.array(shapely.linestrings(solid), dtype=np.object_))
+    nearest, distance_m = walls.query_nearest(
+        shapely.points(cells), return_distance=True, all_matches=False
+    )
+    clear_m[nearest[0]] = distance_m
+    return clear_m
 
 
 def _cells(outline: Polygon, solid: NDArray[np.float64]) -> tuple[NDArray[np.float64], csr_array]:

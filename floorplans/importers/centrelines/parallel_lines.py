@@ -172,22 +172,23 @@ def _corners(strips: list[Strip]) -> Iterator[Polygon]:
         return
     thickest_m = max(strip.thickness_m for strip in strips)
     near = shapely.STRtree(areas).query(areas, predicate="dwithin", distance=thickest_m)
-    for i, j in near[:, near[0] < near[1]].T.tolist():
+    near = near[:, near[0] < near[1]]
+    for i, j in near[:, _bent(strips, *near)].T.tolist():
         reach_m = 1.05 * max(strips[i].thickness_m, strips[j].thickness_m) + _CAP_M
         common = strips[i].area(reach_m).intersection(strips[j].area(reach_m))
         touching = all(common.distance(areas[k]) < 2 * _CAP_M for k in (i, j))
-        if (
-            isinstance(common, Polygon)
-            and common.area > 0
-            and touching
-            and _bent(strips[i], strips[j])
-        ):
+        if isinstance(common, Polygon) and common.area > 0 and touching:
             yield common
 
 
-def _bent(a: Strip, b: Strip) -> bool:
-    (ux, uy), (vx, vy) = (np.subtract(s.end, s.start) for s in (a, b))
-    return bool(abs(ux * vy - uy * vx) > _MAX_SINE * np.hypot(ux, uy) * np.hypot(vx, vy))
+def _bent(
+    strips: list[Strip], first: NDArray[np.int64], second: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Which pairs of strips are not nearly parallel."""
+    along = np.array([np.subtract(strip.end, strip.start) for strip in strips])
+    along /= np.hypot(along[:, 0], along[:, 1])[:, None]
+    (ux, uy), (vx, vy) = along[first].T, along[second].T
+    return np.abs(ux * vy - uy * vx) > _MAX_SINE
 
 
 def _singles(faces: list[_Face], strips: list[Strip]) -> Segments:

@@ -13,6 +13,8 @@ from floorplans.importers.dxf.drawing import Content
 from floorplans.importers.layer_names import Kind, Meaning, is_foundation, meaning_of
 from floorplans.importers.original import DrawnLayer, Original
 
+_NO_WALL_NAMES = "no layer is named like walls"
+
 
 @dataclass(frozen=True)
 class Layers:
@@ -33,6 +35,10 @@ class Layers:
     def material(self, layer: str) -> str | None:
         """Material of the walls of a layer."""
         return self.meanings[layer].material
+
+    def is_guess(self, layer: str) -> bool:
+        """Whether a layer is taken for walls because no layer is named like walls."""
+        return self.why.get(layer) == _NO_WALL_NAMES
 
     def uses(self) -> tuple[LayerUse, ...]:
         """What became of each layer."""
@@ -99,7 +105,7 @@ def layers_of(content: Content, given: Mapping[str, str]) -> Layers:
     if not layers.of("wall"):
         unknown = {n for n, m in meanings.items() if m.kind is None and content.curves.get(n)}
         meanings |= dict.fromkeys(unknown, Meaning("wall"))
-        why |= dict.fromkeys(unknown, "no layer is named like walls")
+        why |= dict.fromkeys(unknown, _NO_WALL_NAMES)
     if not layers.of("wall"):
         raise _no_walls(content)
     return layers

@@ -31,7 +31,7 @@ from floorplans.importers.centrelines.spurious import without_spurious_walls
 from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
 from floorplans.importers.dxf.curves import Curve, Swing
-from floorplans.importers.dxf.drawing import Content, load_document, read_content
+from floorplans.importers.dxf.drawing import Content, Symbol, load_document, read_content
 from floorplans.importers.dxf.layers import Layers, layers_of, missing_blocks
 from floorplans.importers.dxf.openings import (
     as_windows_outside,
@@ -104,7 +104,7 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
     content = read_content(document, options.layers, tolerance)
     layers = layers_of(content, options.layers)
     check_size(_size(content, layers), unit, stated_by)
-    metric = _in_metres(content, UNITS[unit])
+    metric = _with_doors_of_swings(_in_metres(content, UNITS[unit]), layers)
     walls, openings = _building(metric, layers)
     return Draft(
         name=path.stem,
@@ -164,6 +164,18 @@ def _in_metres(content: Content, unit_m: float) -> Content:
         for symbol in content.symbols
     ]
     return metric
+
+
+def _with_doors_of_swings(content: Content, layers: Layers) -> Content:
+    """Take arcs of door leaves for doors where walls and doors are on one layer."""
+    for layer in filter(layers.is_guess, layers.of("wall")):
+        curves = content.curves[layer]
+        swings = door_swings(curves)
+        content.symbols += [
+            Symbol("door", True, layer, (1.0, 0.0), (c,)) for c in curves if c.swing in swings
+        ]
+        content.curves[layer] = [c for c in curves if c.swing is None or c.swing not in swings]
+    return content
 
 
 def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[RawOpening]]:

@@ -223,6 +223,19 @@ def test_layers_of_unknown_names_are_walls_where_no_other_is(tmp_path: Path):
     ]
 
 
+def test_a_door_on_the_only_layer_is_a_door_and_not_an_arc_of_wall(tmp_path: Path):
+    doc = draw.new()
+    draw.add_rings(doc.modelspace(), [draw.OUTER, draw.INNER], "0")
+    for x in (4.95, 5.05):
+        for y0, y1 in ((0.3, 2.0), (2.9, 5.7)):
+            draw.add_lines(doc.modelspace(), [((x, y0), (x, y1))], "0")
+    doc.modelspace().add_arc((5000, 2000), 900, 0, 90, dxfattribs={"layer": "0"})
+    plan = imported(doc, tmp_path).plan
+    ((_, door),) = openings(plan)
+    assert (door.kind, round(door.width_m, 2)) == ("door", 0.9)
+    assert len(plan.walls) == 5
+
+
 def test_layers_that_are_off_are_left_out(tmp_path: Path):
     doc = draw.flat_of_bodies()
     doc.layers.add("WALL-OLD").off()
