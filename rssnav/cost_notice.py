@@ -1,6 +1,8 @@
-"""Announcing that a map will take long."""
+"""Announcing that a map, or the paths to a point, will take long."""
 
 import math
+
+import numpy as np
 
 from raytrace import CostEstimate, Grid, Scene, TraceConfig, Transmitter, estimate_cost
 
@@ -11,6 +13,15 @@ LONG_S = 60.0
 
 LEAST_CELLS = 100
 """Larger cells are proposed where as many remain."""
+
+LONG_PATHS_S = 10.0
+"""Paths to a point that take longer are announced [s]: they show no progress."""
+
+CELLS_OF_BEAMS = 1000
+"""Beams are grown for one receiver too: as much work as the paths to about so many cells."""
+
+BYTES_A_PATH = 100
+"""Memory for each vertex of a listed path, copies included, about."""
 
 MAX_SILENT_WORK = 2e6
 """Maps of less `work` are not estimated: the largest of them take some seconds."""
@@ -33,8 +44,11 @@ def announcement(
     grid: Grid,
     config: TraceConfig,
     threads: int | None = None,
+    max_memory_bytes: int | None = None,
 ) -> str | None:
     """Return what a map will take, in words, if that is long; otherwise None.
+
+    `max_memory_bytes` is the most memory that the estimate may take itself.
 
     Raises
     ------
@@ -43,19 +57,61 @@ def announcement(
     """
     if work(scene, grid, config) < MAX_SILENT_WORK:
         return None
-    cost = estimate_cost(scene, transmitter, grid, config, threads=threads)
+    cost = estimate_cost(
+        scene, transmitter, grid, config, threads=threads, max_memory_bytes=max_memory_bytes
+    )
     return sentence(cost, grid) if cost.seconds > LONG_S else None
+
+
+def paths_announcement(
+    scene: Scene,
+    transmitter: Transmitter,
+    receiver: tuple[float, float, float],
+    config: TraceConfig,
+    max_memory_bytes: int | None = None,
+) -> str | None:
+    """Return what the paths to a point [m] will take, in words, if that is long; otherwise None.
+
+    Raises
+    ------
+    SceneError
+        Where the transmitter is not inside the building.
+    """
+    x, y, z = receiver
+    grid = Grid(np.array([x]), np.array([y]), z, 1.0)
+    if work(scene, grid, config) * CELLS_OF_BEAMS < MAX_SILENT_WORK:
+        return None
+    cost = estimate_cost(
+        scene, transmitter, grid, config, threads=1, max_memory_bytes=max_memory_bytes
+    )
+    if cost.seconds <= LONG_PATHS_S:
+        return None
+    memory = _memory(cost.memory_bytes + cost.paths * BYTES_A_PATH * (config.max_reflections + 3))
+    return (
+        f"these paths will take {_roughly(cost)} {_duration(cost.seconds)} and {memory} of memory: "
+        f"some {_count(cost.paths)} of them; fewer reflections make it shorter"
+    )
 
 
 def sentence(cost: CostEstimate, grid: Grid) -> str:
     """Return an estimate in words."""
     cells = grid.x.size * grid.y.size
-    roughly = "very roughly" if cost.is_extrapolated else "about"
     return (
-        f"this map will take {roughly} {_duration(cost.seconds)}: some {_count(cost.paths)} paths "
-        f"over {_count(cells)} cells; larger cells, fewer reflections, --min-power or "
-        f"--max-paths make it shorter{_affordable(cost, grid)}"
+        f"this map will take {_roughly(cost)} {_duration(cost.seconds)} and "
+        f"{_memory(cost.memory_bytes)} of memory: some {_count(cost.paths)} paths over "
+        f"{_count(cells)} cells; larger cells, fewer reflections, --min-power or --max-paths make "
+        f"it shorter{_affordable(cost, grid)}"
     )
+
+
+def _roughly(cost: CostEstimate) -> str:
+    return "by order of magnitude" if cost.is_extrapolated else "about"
+
+
+def _memory(n_bytes: float) -> str:
+    unit, name = (1e9, "GB") if n_bytes >= 1e9 else (1e6, "MB")
+    value = max(n_bytes / unit, 1.0)
+    return f"{value:.1f} {name}" if value < 10.0 else f"{_count(round(value))} {name}"
 
 
 def _affordable(cost: CostEstimate, grid: Grid) -> str:

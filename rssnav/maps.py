@@ -100,8 +100,10 @@ class MapRequest:
         scene = scene or scene_of(self.plan, self.edition)
         made_with = scene, self.transmitter, self.grid, self.config
         try:
-            if notice is not None and (words := announcement(*made_with, threads)) is not None:
-                notice(words)
+            if notice is not None:
+                words = announcement(*made_with, threads, max_memory_bytes)
+                if words is not None:
+                    notice(words)
             radio_map = compute_radio_map(
                 *made_with,
                 receive_antenna=self.receive_antenna,

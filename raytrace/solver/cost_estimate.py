@@ -12,6 +12,7 @@ for, and the estimate is extrapolated from the last two.
 
 import math
 import time
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +23,7 @@ from raytrace.errors import MemoryLimitError, TraceStoppedError
 from raytrace.grid import Grid
 from raytrace.kernels.guard import Guard
 from raytrace.kernels.sums import add_sums, new_sums, sums_bytes
+from raytrace.memory import memory_limit
 from raytrace.radio.transmitter import Transmitter
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import sums_in_work
@@ -29,7 +31,7 @@ from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
 from raytrace.solver.setup import prepare
-from raytrace.solver.workers import Workers
+from raytrace.solver.workers import Stop, Workers
 from raytrace.threads import n_threads
 
 LARGEST = 16
@@ -56,7 +58,7 @@ GOLDEN = 0.618
 REACHED_RECEIVERS = 64
 """More tiles are taken until this many of their receivers have a path."""
 
-LONGEST_S = 0.6
+LONGEST_S = 0.4
 """Processor time for the full order, and again for lower ones [s]."""
 
 MAX_BYTES = 200 << 20
@@ -82,7 +84,8 @@ class CostEstimate:
     memory_bytes
         Memory for sums and for beams, beyond what the process uses already.
     is_extrapolated
-        Whether the numbers follow from those of fewer reflections; they are rough then.
+        Whether the numbers follow from those of fewer reflections; then only their order of
+        magnitude is known.
     seconds_for_beams
         The part of `seconds` that does not depend on the number of cells [s].
     seconds_of_lower_orders
@@ -137,8 +140,13 @@ def estimate_cost(
     config: TraceConfig | None = None,
     *,
     threads: int | None = None,
+    stop: Stop | None = None,
+    max_memory_bytes: int | None = None,
 ) -> CostEstimate:
-    """Estimate what `compute_radio_map` will take, within a factor of two or so.
+    """Estimate what `compute_radio_map` will take, with about a second of processor time.
+
+    Within a factor of two or so; where the numbers are extrapolated from fewer reflections, their
+    order of magnitude.
 
     Parameters
     ----------
@@ -146,15 +154,23 @@ def estimate_cost(
         As for `compute_radio_map`.
     threads
         Number of threads that the map will be traced with; all processors by default.
+    stop, max_memory_bytes
+        As for `compute_radio_map`; they apply to the estimate itself, which takes some 200 MB at
+        most.
 
     Raises
     ------
     SceneError
         Where the transmitter is not inside the building.
+    TraceStoppedError
+        Where `stop` has ended the estimate.
+    MemoryLimitError
+        Where even line of sight needs more memory than `max_memory_bytes`.
     """
     config, threads = config or TraceConfig(), n_threads(threads)
     n_receivers = grid.x.size * grid.y.size
-    sampler = _Sampler(scene, transmitter, grid)
+    max_bytes = min(MAX_BYTES, memory_limit(max_memory_bytes))
+    sampler = _Sampler(scene, transmitter, grid, stop or _never, max_bytes)
     sampler.compile(config)
     sample, lower = sampler.sample(config, LONGEST_S), list[_Sample]()
     is_extrapolated = sample is None
@@ -184,6 +200,8 @@ class _Sampler:
     scene: Scene
     transmitter: Transmitter
     grid: Grid
+    stop: Stop
+    max_bytes: int
 
     def compile(self, config: TraceConfig) -> None:
         """Compile the kernels, whose time does not count."""
@@ -191,8 +209,8 @@ class _Sampler:
             config, max_reflections=1, max_transmissions=min(config.max_transmissions, 1)
         )
         point = np.array([[self.grid.x[0], self.grid.y[0], self.grid.height_m]])
-        with Workers(1) as workers:
-            workers.run(self._traced, point, small, workers.guard(MAX_BYTES))
+        with Workers(1, self.stop) as workers, suppress(MemoryLimitError):
+            workers.run(self._traced, point, small, workers.guard(self.max_bytes))
 
     def lower_orders(self, config: TraceConfig) -> list[_Sample]:
         """Return samples of 0, 1, ... reflections, as many as there is time for."""
@@ -208,26 +226,30 @@ class _Sampler:
 
     def least(self, config: TraceConfig) -> _Sample:
         """Return the sample of line of sight alone."""
-        found = self.sample(TraceConfig(0, 0, min_power_dbm=config.min_power_dbm), math.inf)
-        assert found is not None
-        return found
+        return self._sampled(TraceConfig(0, 0, min_power_dbm=config.min_power_dbm), math.inf)
 
     def sample(self, config: TraceConfig, longest_s: float) -> _Sample | None:
         """Return a sample; None where it takes too much time or memory."""
+        try:
+            return self._sampled(config, longest_s)
+        except (TraceStoppedError, MemoryLimitError):
+            if self.stop():
+                raise
+            return None
+
+    def _sampled(self, config: TraceConfig, longest_s: float) -> _Sample:
+        """Return a sample of more and more receivers, until enough of them have a path."""
         ends_s = time.process_time() + longest_s
         every = max(1, self.grid.x.size * self.grid.y.size // RECEIVERS)
-        with Workers(1, lambda: time.process_time() > ends_s) as workers:
-            guard = workers.guard(MAX_BYTES)
-            try:
-                while True:
-                    points = _in_tiles(self.grid, every)
-                    found = workers.run(self._traced, points, config, guard)
-                    enough = found.n_reached >= REACHED_RECEIVERS or len(points) > 8 * RECEIVERS
-                    if every == 1 or enough:
-                        return found
-                    every //= 2
-            except (TraceStoppedError, MemoryLimitError):
-                return None
+        with Workers(1, lambda: self.stop() or time.process_time() > ends_s) as workers:
+            guard = workers.guard(self.max_bytes)
+            while True:
+                points = _in_tiles(self.grid, every)
+                found = workers.run(self._traced, points, config, guard)
+                enough = found.n_reached >= REACHED_RECEIVERS or len(points) > 8 * RECEIVERS
+                if every == 1 or enough:
+                    return found
+                every //= 2
 
     def _traced(self, points: Floats, config: TraceConfig, guard: Guard) -> _Sample:
         started = time.perf_counter()
@@ -259,6 +281,11 @@ class _Sampler:
         return _Sample(
             n_classes, len(points), n_reached, paths, preparing, growing, summing, most_beams
         )
+
+
+def _never() -> bool:
+    """Stop no estimate."""
+    return False
 
 
 def _extrapolated(samples: list[_Sample], max_reflections: int) -> _Sample:

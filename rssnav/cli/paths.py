@@ -34,6 +34,7 @@ from rssnav.cli.options import (
     in_bytes,
 )
 from rssnav.cli.radio import Position, Radio, check_inside, radio_of, read_position
+from rssnav.cost_notice import paths_announcement
 from rssnav.kernel_cache import tracer_cache
 from rssnav.scenes import scene_of
 
@@ -155,8 +156,12 @@ def _trace(
     if not tracer_cache().n_compiled:
         note(COMPILING)
     try:
+        scene = scene_of(plan, edition)
+        announced = scene, transmitter, to, radio.config, max_memory_bytes
+        if (words := paths_announcement(*announced)) is not None:
+            note(words)
         return trace_paths(
-            scene_of(plan, edition),
+            scene,
             transmitter,
             np.array([to]),
             radio.config,

@@ -1,11 +1,21 @@
 """The cost of a map is estimated within a factor of two."""
 
+import time
 from functools import cache
 
 import pytest
 
 import floorplans
-from raytrace import Grid, Scene, TraceConfig, Transmitter, compute_radio_map, estimate_cost
+from raytrace import (
+    Grid,
+    MemoryLimitError,
+    Scene,
+    TraceConfig,
+    TraceStoppedError,
+    Transmitter,
+    compute_radio_map,
+    estimate_cost,
+)
 
 MAPS = [
     ("flat", 6, 1, 1.0),
@@ -52,3 +62,28 @@ def test_a_single_cell_is_counted_exactly() -> None:
     config = TraceConfig(4, 1)
     paths = int(compute_radio_map(scene, source, grid, config).path_count.sum())
     assert estimate_cost(scene, source, grid, config).paths == paths
+
+
+def test_an_estimate_of_a_large_building_is_bounded() -> None:
+    plan = floorplans.generate_office(15, 10)
+    walls = plan.to_mesh()
+    scene = Scene.from_mesh(walls.mesh, walls.face_material, walls.materials)
+    grid = Grid.over(plan.bounds, 1.0, 1.5)
+    began_s = time.process_time()
+    cost = estimate_cost(scene, Transmitter(plan.source), grid, TraceConfig(20, 1))
+    assert time.process_time() - began_s < 2.0
+    assert cost.is_extrapolated
+
+
+def test_an_estimate_can_be_stopped() -> None:
+    scene, source, bounds = scene_of("scenario1")
+    with pytest.raises(TraceStoppedError):
+        estimate_cost(scene, source, Grid.over(bounds, 1.0, 1.5), stop=lambda: True)
+
+
+def test_an_estimate_keeps_to_its_memory() -> None:
+    scene, source, bounds = scene_of("scenario1")
+    grid, config = Grid.over(bounds, 1.0, 1.5), TraceConfig(4, 1)
+    assert estimate_cost(scene, source, grid, config, max_memory_bytes=300_000).is_extrapolated
+    with pytest.raises(MemoryLimitError):
+        estimate_cost(scene, source, grid, config, max_memory_bytes=1)
