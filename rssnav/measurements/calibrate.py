@@ -156,7 +156,8 @@ def calibrate(
     offsets
         What a constant offset is fitted for.
     materials
-        Names of the materials; all dielectrics of the plan by default.
+        Names of the materials; all dielectrics of the plan by default, but for those whose loss is
+        measured.
     square_m
         Side of the squares that are held out together [m].
     progress
@@ -175,7 +176,8 @@ def calibrate(
             survey.path,
         )
     steps = _Steps(len(survey.transmitters) + 1 + len(folds) + len(others) + 1, progress)
-    of = material_values(scene.slabs, settings.frequency_hz, materials)
+    measured = {m.name for m in plan.materials if m.loss_db is not None}
+    of = material_values(scene.slabs, settings.frequency_hz, materials, measured)
     traced = TracedSurvey.of(scene, survey, settings, lambda done, _: steps.reached(done))
     groups = offset_groups(survey, offsets)
     found = fit_what_is_told(traced, of, groups)

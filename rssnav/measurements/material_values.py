@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -81,7 +81,10 @@ def dielectrics_in(slabs: Sequence[Slab]) -> dict[str, Dielectric]:
 
 
 def material_values(
-    slabs: Sequence[Slab], frequency_hz: float, names: Sequence[str] | None = None
+    slabs: Sequence[Slab],
+    frequency_hz: float,
+    names: Sequence[str] | None = None,
+    measured: Collection[str] = (),
 ) -> tuple[MaterialValue, ...]:
     """List the properties that can be fitted.
 
@@ -93,14 +96,21 @@ def material_values(
         Frequency of the survey [Hz].
     names
         Materials; all of the slabs by default.
+    measured
+        Materials whose loss is measured, which keep it.
 
     Raises
     ------
     SurveyError
-        For a name that no slab has.
+        For a name that no slab has, or of a measured material.
     """
-    known = dielectrics_in(slabs)
+    known = {n: m for n, m in dielectrics_in(slabs).items() if n not in measured}
     for name in names or ():
+        if name in measured:
+            raise SurveyError(
+                f"material {name!r} has a measured loss, which stays as it is: give its "
+                "conductivity in place of loss_db to fit it"
+            )
         if name not in known:
             raise SurveyError(
                 f"no wall, floor or ceiling is made of {name!r} as a dielectric: "

@@ -114,6 +114,20 @@ def test_what_readings_do_not_tell_is_kept(survey: Survey) -> None:
         calibrate(room(), scene_of(room()), one, SETTINGS, materials=["plasterboard"])
 
 
+def test_a_measured_loss_is_kept(survey: Survey) -> None:
+    """It is not fitted by default, and refused where it is asked for."""
+    board = PlanMaterial("board", 2.7, loss_db=6.0, loss_frequency_hz=FREQUENCY_HZ)
+    walls = tuple(
+        replace(wall, material="board") if wall.material == "plasterboard" else wall
+        for wall in room().walls
+    )
+    plan = replace(room(), walls=walls, materials=(board,))
+    with pytest.raises(SurveyError, match="'board' has a measured loss"):
+        calibrate(plan, scene_of(plan), survey, SETTINGS, materials=["board"])
+    of = material_values(scene_of(plan).slabs, FREQUENCY_HZ, None, {"board"})
+    assert {value.material for value in of} == {"concrete", "ceiling_board"}
+
+
 def test_unknown_materials_are_refused(survey: Survey) -> None:
     with pytest.raises(SurveyError, match="no wall, floor or ceiling is made of 'gold'"):
         calibrate(room(), scene_of(room()), survey, SETTINGS, materials=["gold"])
