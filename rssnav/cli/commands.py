@@ -53,7 +53,7 @@ COMMANDS = {
     ),
     "paths": Entry(
         ("paths",),
-        "Trace all paths from a plan's source to a receiver and print the strongest.",
+        "Trace all paths from a transmitter to a receiver and print the strongest.",
     ),
     "validate": Entry(
         ("validate",),
