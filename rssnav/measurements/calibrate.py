@@ -31,7 +31,7 @@ from rssnav.progress import Progress
 
 CURVE_PLACES = (5, 10, 20, 40)
 CURVE_DRAWS = 3
-FAR = 2.5
+FAR = 1.9
 """A fitted value this many standard deviations of its prior away is flagged as doubtful."""
 
 
@@ -300,7 +300,7 @@ def _doubts(found: Calibrated) -> tuple[str, ...]:
             unit = " S/m" if value.kind != "permittivity" else ""
             doubts.append(
                 f"{value.material}: a {value.kind} of {value.quantity(float(fitted)):.3g}{unit} is "
-                f"{abs(away):.1f} standard deviations of building materials from that of the plan: "
+                "at the limit, two standard deviations of building materials from the plan's: "
                 "furniture, thickness or doors may be wrong instead"
             )
     return tuple(doubts)

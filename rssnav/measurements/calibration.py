@@ -36,6 +36,11 @@ TOLERANCE = 1e-2
 """Relative change of values and of the sum of squares below which a fit ends."""
 
 MOST_EVALUATIONS = 30
+
+LIMIT = 2.0
+"""A value stays within this many standard deviations of its prior: RSS has further minima where a
+wall is a whole number of wavelengths thick, at permittivities that no building material has."""
+
 PER_DB = 10.0 / np.log(10.0)
 
 
@@ -264,6 +269,7 @@ def fit_values(
         start,
         jac=slopes_of_rows,  # pyright: ignore[reportArgumentType]
         loss="soft_l1",
+        bounds=(prior - LIMIT * spread, prior + LIMIT * spread),
         x_scale=spread,
         xtol=TOLERANCE,
         ftol=TOLERANCE,
