@@ -14,6 +14,7 @@ from cli_plans import QUICK, done, edited, room_file, run
 
 from raytrace import RadioMap
 from rssnav import TrainingResult
+from rssnav.experiments.paper import scenarios
 
 resource = pytest.importorskip("resource")
 
@@ -37,7 +38,9 @@ def files(tmp_path_factory) -> dict[str, Path]:
     done("map", found["plan"], "-o", found["map"])
     done("train", found["plan"], "--map", found["map"], "--agent", "location", "--runs", 2,
          "--episodes", 60, "-o", found["run"])  # fmt: skip
-    found["dxf"] = folder / "room.dxf"
+    found["dxf"], found["misfit"] = folder / "room.dxf", folder / "misfit.toml"
+    misfit = text.replace("points = [[3, 0], [3, 2.5]]", "points = [[3, 0.01], [3, 2.5]]")
+    found["misfit"].write_text(misfit, encoding="utf-8")
     done("plan", "export", found["plan"], "-o", found["dxf"])
     return found
 
@@ -55,12 +58,18 @@ COMMANDS = {
     "plan export yaml": ("plan", "export", "{plan}", "-o", "{out}/room.yaml"),
     "plan export glb": ("plan", "export", "{plan}", "-o", "{out}/room.glb"),
     "plan import": ("plan", "import", "{dxf}", "-o", "{out}/room.toml"),
+    "plan export geojson": ("plan", "export", "{plan}", "-o", "{out}/room.geojson"),
+    "plan check": ("plan", "check", "{misfit}", "--fix", "-o", "{out}/fixed.toml"),
     "plan new": ("plan", "new", "-o", "{out}/new.toml"),
+    "plan show": ("plan", "show", "{plan}", "-o", "{out}/plan.png"),
+    "paths": ("paths", "{plan}", "--to", "5,3", *QUICK, "--picture", "{out}/paths.png"),
+    "maps": ("maps", "--out", "{out}"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_the_file_that_is_full_is_named(name, files, tmp_path) -> None:
+def test_the_file_that_is_full_is_named(name, files, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(scenarios, "PLANS", ("flat",))  # `maps` traces the paper's for a minute
     out = tmp_path / "out"
     out.mkdir()
     arguments = [str(word).format(out=out, **files) for word in COMMANDS[name]]

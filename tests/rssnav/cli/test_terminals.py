@@ -107,13 +107,25 @@ def test_closed_pipe_ends_quietly(command: str) -> None:
     assert (ended.returncode, ended.stderr) == (1, b"")
 
 
+PRINTING = {
+    "few lines": "plan list",
+    "many": "paths flat --to 10,1.5 --reflections 2 --diffractions 0 --top 1000 --json",
+    "of a file": "plan new --force -o new.toml",
+    "of checks": "plan check flat --json",
+    "help": "plan --help",
+}
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-def test_full_disk_under_the_output_is_a_message() -> None:
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("name", PRINTING)
+def test_full_disk_under_the_output_is_a_message(name: str, unbuffered: str, tmp_path) -> None:
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
     with open("/dev/full", "wb") as full:
-        ended = rssnav("plan list", stdout=full)
+        ended = rssnav(PRINTING[name], stdout=full, cwd=tmp_path, env=environment)
     assert ended.returncode == 1
-    assert ended.stderr.startswith(b"rssnav: ")
-    assert b"Traceback" not in ended.stderr
+    lines = [line for line in ended.stderr.decode().splitlines() if "kernels" not in line]
+    assert lines == ["rssnav: standard output: No space left on device"]
 
 
 def test_comments_of_an_import_are_valid_toml(tmp_path: Path) -> None:
