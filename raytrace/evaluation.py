@@ -22,10 +22,10 @@ from raytrace.radio.transmitter import Transmitter
 from raytrace.results.paths import Paths
 from raytrace.results.step_lanes import gains_of
 from raytrace.scene import Scene
+from raytrace.solver.dynamic_range import prepare_within_range
 from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.kept_paths import KeptPaths, keep_paths
-from raytrace.solver.setup import prepare
 from raytrace.solver.workers import Stop, Workers
 
 
@@ -200,7 +200,9 @@ def trace_points(
     evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(threads, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
-        tracing = workers.run(prepare, scene, transmitter.position, points, config, guard)
+        tracing = workers.run(
+            prepare_within_range, scene, transmitter.position, points, config, guard, evaluation
+        )
         classes = path_classes(tracing.shared_by(workers.n))
         kept = keep_paths(workers, classes, evaluation, len(points), max_left_out, tracing.guard)
     return TracedPoints(scene.slabs, transmitter, receive_antenna, kept)

@@ -23,11 +23,12 @@ from raytrace.results.radio_map import RadioMap
 from raytrace.results.transmitter_maps import TransmitterMaps
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import Progress, sum_paths
+from raytrace.solver.dynamic_range import prepare_within_range
 from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import COPIES_OF_PATHS, cells_bytes, path_classes
 from raytrace.solver.limits import taking
 from raytrace.solver.path_class import Evaluation
-from raytrace.solver.setup import Tracing, prepare
+from raytrace.solver.setup import Tracing
 from raytrace.solver.workers import Stop, Workers
 
 TRACER_VERSION = 5
@@ -77,7 +78,9 @@ def trace_paths(
     with Workers(1, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
         position = transmitter.position
-        tracing = workers.run(prepare, scene, position, receivers, config, guard)
+        tracing = workers.run(
+            prepare_within_range, scene, position, receivers, config, guard, evaluation
+        )
         return workers.run(_list_paths, tracing, evaluation)
 
 
@@ -145,7 +148,10 @@ def compute_radio_map(
         needed_bytes = cells_bytes(scene, grid.x.size * grid.y.size, config, workers.n)
         guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
         points = grid.points()
-        tracing = workers.run(prepare, scene, transmitter.position, points, config, guard)
+        position = transmitter.position
+        tracing = workers.run(
+            prepare_within_range, scene, position, points, config, guard, evaluation
+        )
         sums = _sum_paths(workers, tracing, evaluation, progress)
     straight_m = np.linalg.norm(points - np.array(transmitter.position), axis=1)
     _warn_of_near_cells(sums, points)
@@ -264,7 +270,10 @@ def received_power(
         guard = workers.guard(memory_limit(max_memory_bytes))
         needed_bytes = cells_bytes(scene, len(points), config, workers.n)
         guard = taking(guard, needed_bytes, f"{len(points)} points")
-        tracing = workers.run(prepare, scene, transmitter.position, points, config, guard)
+        position = transmitter.position
+        tracing = workers.run(
+            prepare_within_range, scene, position, points, config, guard, evaluation
+        )
         sums = _sum_paths(workers, tracing, evaluation, progress)
     return received_dbm(sums.power, transmitter.power_dbm)
 

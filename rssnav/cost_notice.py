@@ -23,6 +23,9 @@ CELLS_OF_BEAMS = 1000
 BYTES_A_PATH = 100
 """Memory for each vertex of a listed path, copies included, about."""
 
+MANY_WALLS = 5
+"""Walls on a path whose transmissions are limited by loss alone, in `work`."""
+
 MAX_SILENT_WORK = 2e6
 """Maps of less `work` are not estimated: the largest of them take some seconds."""
 
@@ -34,7 +37,8 @@ def work(scene: Scene, grid: Grid, config: TraceConfig) -> float:
     """
     n_edges = len(scene.vertical_edges) + len(scene.horizontal_edges)
     edges = 1 + n_edges * config.max_diffractions
-    cells, walls = grid.x.size * grid.y.size, 1 + config.max_transmissions
+    most = MANY_WALLS if config.max_transmissions is None else config.max_transmissions
+    cells, walls = grid.x.size * grid.y.size, 1 + most
     return cells * edges * walls * 2.0 ** (config.max_reflections - 6)
 
 

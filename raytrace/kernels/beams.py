@@ -12,6 +12,15 @@ import numpy as np
 from raytrace.arrays import Floats, Int32s, Ints
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.guard import Guard, is_stopped, may_hold
+from raytrace.kernels.losses import (
+    IS_MIRRORED,
+    IS_TRANSMITTED,
+    Incidence,
+    Limits,
+    incidence,
+    is_strong,
+    largest_fraction,
+)
 from raytrace.kernels.plan_view import GRAZING_M, PlanView, cross, mirrored
 from raytrace.kernels.rows import copy_row, enlarged, resized
 
@@ -21,10 +30,11 @@ PARENT, EDGE, REFLECTED, CELL, ORDER, TRANSMITTED, BOUNCES, INTERACTIONS = range
 gone through; floor or ceiling reflections that its heights require; reflections, solid walls gone
 through and partial walls with openings so far."""
 
-IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y = range(6)
-"""Columns of `Tree.beam` [m]: the root's image, and the corners of the window."""
+IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y, FRACTION = range(7)
+"""Columns of `Tree.beam`: the root's image, and the corners of the window [m]; the largest fraction
+of the power that the walls on the way leave, which is known where there is a limit by loss."""
 
-BEAM_BYTES = 8 * 4 + 6 * 8
+BEAM_BYTES = 8 * 4 + 7 * 8
 """Size of a row of `Tree`."""
 
 Window = tuple[float, float, float, float]
@@ -32,10 +42,15 @@ Window = tuple[float, float, float, float]
 
 
 class Tree(NamedTuple):
-    """Beams, each behind its parent: `link` (n, 8) int32 and `beam` (n, 6) [m]."""
+    """Beams, each behind its parent: `link` (n, 8) int32 and `beam` (n, 7)."""
 
     link: Int32s
     beam: Floats
+
+
+def no_tree() -> Tree:
+    """Return a tree without beams."""
+    return Tree(np.empty((0, 8), np.int32), np.empty((0, 7)))
 
 
 def grow_tree(
@@ -43,9 +58,9 @@ def grow_tree(
     bounces: Ints,
     root: tuple[float, float],
     root_cells: Ints,
-    limits: tuple[int, int],
+    limits: Limits,
     guard: Guard,
-) -> tuple[Tree, bool]:
+) -> tuple[Tree, float, bool]:
     """Grow all beams from a point.
 
     Parameters
@@ -60,18 +75,18 @@ def grow_tree(
     root_cells
         The cells it lies in.
     limits
-        Maximum numbers of reflections, those required at floor and ceiling included, and of
-        transmissions through solid walls.
+        How far the beams are grown.
     guard
         May end the growth.
 
     Returns
     -------
-    tree, is_whole
-        The beams, and whether they are all; otherwise there are none.
+    tree, left_out, is_whole
+        The beams; a bound on the power of all paths within those that are too weak to be grown;
+        and whether these are all beams; otherwise there are none.
     """
-    link, beam, is_whole = grow_tree_arrays(view, bounces, root, root_cells, limits, guard)
-    return Tree(link, beam), is_whole
+    arrays = grow_tree_arrays(view, bounces, root, root_cells, limits, guard)
+    return Tree(*arrays[:2]), *arrays[2:]
 
 
 @jit()
@@ -80,17 +95,18 @@ def grow_tree_arrays(
     bounces: Ints,
     root: tuple[float, float],
     root_cells: Ints,
-    limits: tuple[int, int],
+    limits: Limits,
     guard: Guard,
-) -> tuple[Int32s, Floats, bool]:
+) -> tuple[Int32s, Floats, float, bool]:
     """Arrays of `grow_tree`."""
     link = np.zeros((256 + len(root_cells), 8), np.int32)
-    beam = np.zeros((256 + len(root_cells), 6))
+    beam, left_out = np.zeros((256 + len(root_cells), 7)), np.zeros(1)
     n = i = int(np.int64(0))  # a literal would be compiled as a type of its own
     for cell in root_cells:
         link[n, PARENT] = link[n, EDGE] = -1
         link[n, CELL] = cell
         beam[n, IMAGE_X], beam[n, IMAGE_Y] = root
+        beam[n, FRACTION] = 1.0
         n += 1
     while i < n and not is_stopped(guard):
         needed = n + most_children(view, link[i, CELL])
@@ -98,11 +114,11 @@ def grow_tree_arrays(
             break
         while needed > len(link):
             link, beam = enlarged(link), enlarged(beam)
-        n = split(view, bounces, link, beam, i, n, limits)
+        n = split(view, bounces, (link, beam), i, n, limits, left_out)
         i += 1
     is_whole = i == n
     n = n if is_whole else 0
-    return resized(link, n), resized(beam, n), is_whole
+    return resized(link, n), resized(beam, n), left_out[0], is_whole
 
 
 @jit(inner=True)
@@ -131,32 +147,56 @@ def may_enter(link: Int32s, i: int, cell: int) -> bool:
 def split(
     view: PlanView,
     bounces: Ints,
-    link: Int32s,
-    beam: Floats,
+    rows: tuple[Int32s, Floats],
     i: int,
     n: int,
-    limits: tuple[int, int],
+    limits: Limits,
+    left_out: Floats,
 ) -> int:
-    """Write the children of beam i from row n on; return the next row."""
-    cell = link[i, CELL]
+    """Write the children of beam i from row n of `Tree` on; return the next row.
+
+    The bound on those that are too weak is added to `left_out` (1,).
+    """
+    link, beam = rows
+    cell, order, fraction = link[i, CELL], int(link[i, ORDER]), beam[i, FRACTION]
     for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
         meets, window = narrowed(view, link[i, EDGE], beam[i], e)
         if not meets:
             continue
+        met = incidence_of(view, beam[i], e, window, limits)
         required = max(link[i, BOUNCES], bounces[e, 0])
-        if link[i, ORDER] + required <= limits[0] and may_enter(link, i, view.beyond[e]):
+        if (
+            order + required <= limits.max_reflections
+            and may_enter(link, i, view.beyond[e])
+            and is_strong(limits, order, int(view.beyond[e]), fraction, met.nearest, left_out)
+        ):
             pass_beam(view, link, beam, i, n, e, window)
             link[n, CELL] = view.beyond[e]
             link[n, BOUNCES] = required
             n += 1
-        if link[i, TRANSMITTED] < limits[1]:
-            n = transmit_beam(view, link, beam, i, n, e, window)
+        if link[i, TRANSMITTED] < limits.max_transmissions:
+            kept = fraction * largest_fraction(limits, view, e, IS_TRANSMITTED, met, order)
+            n = transmit_beam(view, link, beam, i, n, e, window, (limits, met, kept, left_out))
         required = max(link[i, BOUNCES], bounces[e, 1])
-        if view.profile[e] >= 0 and link[i, ORDER] + 1 + required <= limits[0]:
-            reflect_beam(view, link, beam, i, n, e, window)
-            link[n, BOUNCES] = required
-            n += 1
+        if view.profile[e] >= 0 and order + 1 + required <= limits.max_reflections:
+            kept = fraction * largest_fraction(limits, view, e, IS_MIRRORED, met, order)
+            if is_strong(limits, order + 1, cell, kept, met.nearest, left_out):
+                reflect_beam(view, link, beam, i, n, e, window)
+                link[n, BOUNCES] = required
+                beam[n, FRACTION] = kept
+                n += 1
     return n
+
+
+@jit(inline=True)
+def incidence_of(view: PlanView, beam: Floats, e: int, window: Window, limits: Limits) -> Incidence:
+    """Incidence of a beam on the part of edge e within a window."""
+    if not limits.loss.is_active:
+        return Incidence(0.0, 0.0, 1.0)
+    px, py = beam[IMAGE_X], beam[IMAGE_Y]
+    nx, ny, d = view.plane[e, 0], view.plane[e, 1], view.plane[e, 2]
+    right, left = (window[0] - px, window[1] - py), (window[2] - px, window[3] - py)
+    return incidence(nx * px + ny * py - d, (nx, ny), right, left)
 
 
 @jit(inner=True)
@@ -220,6 +260,7 @@ def pass_beam(
     link_child(view, link, i, n, e, False)
     beam[n, IMAGE_X], beam[n, IMAGE_Y] = beam[i, IMAGE_X], beam[i, IMAGE_Y]
     beam[n, RIGHT_X], beam[n, RIGHT_Y], beam[n, LEFT_X], beam[n, LEFT_Y] = window
+    beam[n, FRACTION] = beam[i, FRACTION]
 
 
 @jit(inner=True)
@@ -231,16 +272,25 @@ def transmit_beam(
     n: int,
     e: int,
     window: Window,
+    loss: tuple[Limits, Incidence, float, Floats],
 ) -> int:
-    """Write the beams that go through a solid wall, from row n on; return the next row."""
+    """Write the beams that go through a solid wall, from row n on; return the next row.
+
+    `loss` holds the arguments of `losses.is_strong`.
+    """
+    limits, met, kept, left_out = loss
+    order = int(link[i, ORDER])
     for k in range(view.behind_first[e], view.behind_first[e + 1]):
         f = view.behind[k]
         back = (view.ends[f, 2], view.ends[f, 3], view.ends[f, 0], view.ends[f, 1])
         part = common(beam[i], window, back)
-        if is_wide(beam[i], part) and may_enter(link, i, int(view.cell_of[f])):
+        if not is_wide(beam[i], part) or not may_enter(link, i, int(view.cell_of[f])):
+            continue
+        if is_strong(limits, order, int(view.cell_of[f]), kept, met.nearest, left_out):
             pass_beam(view, link, beam, i, n, f, part)
             link[n, CELL] = view.cell_of[f]
             link[n, TRANSMITTED] += 1
+            beam[n, FRACTION] = kept
             n += 1
     return n
 

@@ -19,6 +19,11 @@ from raytrace.kernels.lanes import (
 )
 from raytrace.kernels.unfolding import NORMAL, REFLECT_WALL, SURFACE, TYPE, Leg
 
+SHEET_POWER, SHEET_POWER_THROUGH_WALLS, WEDGE_POWER = 1.0, 2.25, 4.0
+"""Largest power behind an edge over that of a free path as long: two terms of half its field; the
+same where a sheet's shadow lacks at most twice the field, that of the air less the transmitted one;
+four terms (see `wedge_bound`)."""
+
 
 @jit(inline=True)
 def free_space(tables: FieldTables, length: Lanes) -> Lanes:
@@ -73,7 +78,8 @@ def wedge_bound(
     """Bounds on diffracted powers, without the reflections at walls.
 
     A term of a half plane has at most half the field of a free path as long, and at most
-    1 / (2 sqrt(pi) s) of it, s the argument of its transition function; a wedge has four.
+    1 / (2 sqrt(pi) s) of it, s the argument of its transition function; a wedge has four. The
+    transmitted field in the shadow of a sheet at most doubles the first one.
 
     Parameters
     ----------
@@ -85,11 +91,13 @@ def wedge_bound(
         See `vertical_edges.Pair`, and the number of reflections at walls.
     """
     if not is_sheet:
-        return free_space(tables, total) * 4.0
+        return free_space(tables, total) * WEDGE_POWER
     rise = (geometry.max_reflections - wall_reflections + 1) * geometry.building.height
     cosine = total / sqrt(total * total + rise * rise)
     amplitude = lanes_of(0.0)
+    through = 2.0 if len(tables.transmission) > 0 else 1.0
     for half in cosines:
         s = (2.0 * math.sqrt(math.pi)) * sqrt_2kl * sqrt(cosine) * absolute(half)
-        amplitude = amplitude + where(s < 2.0, lanes_of(0.5), 1.0 / s)
+        amplitude = amplitude + where(s < 2.0, lanes_of(0.5), 1.0 / s) * through
+        through = 1.0
     return amplitude * amplitude * free_space(tables, total)

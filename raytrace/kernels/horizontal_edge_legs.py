@@ -25,7 +25,7 @@ class HorizontalEdgeArrays(NamedTuple):
     Attributes
     ----------
     frame
-        (7,) of its edge of the plan view, seen from the side the paths leave to.
+        (8,) of its edge of the plan view, seen from the side the paths leave to.
     z
         Its height [m].
     up
@@ -51,6 +51,8 @@ class ImagesIn(NamedTuple):
         (n,) image of the transmitter in the frame of the edge [m]; h < 0 behind it.
     low, high
         (n,) the interval of the edge within the beam [m].
+    fraction
+        (n,) see `beams.FRACTION`.
     """
 
     order: Ints
@@ -59,6 +61,7 @@ class ImagesIn(NamedTuple):
     h: Floats
     low: Floats
     high: Floats
+    fraction: Floats
 
 
 class HorizontalEdgeBeams(NamedTuple):
@@ -69,7 +72,7 @@ class HorizontalEdgeBeams(NamedTuple):
     edge, tree, images
         The edge, all beams from the transmitter, and those that meet the edge.
     strips, hits, seen
-        Beams from the edge, and the receivers visible from them (see `strips.hit_from_strip`).
+        Beams from the edge, and the receivers visible from them (see `strip_hits.hit_from_strip`).
     """
 
     edge: HorizontalEdgeArrays

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Floats
-from raytrace.kernels.beams import ORDER, Tree
+from raytrace.kernels.beams import CELL, ORDER, Tree
 from raytrace.kernels.blocks import Block, next_block
-from raytrace.kernels.bounds import free_space
+from raytrace.kernels.bounds import SHEET_POWER, SHEET_POWER_THROUGH_WALLS, free_space
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field_tables import FieldTables
@@ -35,10 +35,16 @@ from raytrace.kernels.lanes import (
 )
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.records import Record, record_paths
-from raytrace.kernels.strips import StripTree
+from raytrace.kernels.strips import FRACTION, StripTree
 from raytrace.kernels.sums import Bundle, empty_bundle, with_path
 from raytrace.kernels.validity import OFFSET_M, one_sided_weight, validity_weight
-from raytrace.kernels.workspace import Collector, add_bundle, apply_power_threshold, count_path
+from raytrace.kernels.workspace import (
+    Collector,
+    add_bundle,
+    apply_power_threshold,
+    count_path,
+    least_power,
+)
 
 OFFSETS_OF_LEGS_M = (
     (0.0, 0.0),
@@ -147,11 +153,15 @@ def sum_horizontal_edge(
     edge, images, hits, workspace = beams.edge, beams.images, beams.hits, work.workspace
     z_in, bounces = geometry.transmitter_z, geometry.image_bounces
     trees = beams.tree, beams.strips
+    through_walls = len(tables.transmission) > 0
+    power_behind = SHEET_POWER_THROUGH_WALLS if through_walls else SHEET_POWER
     first = int(np.int64(0))  # a literal would be compiled as a type of its own
     while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
+        least = least_power(collector, beams.strips.link[block.beam, CELL])
         seen = seen_from(edge, beams.seen, block, work)
+        kept = beams.strips.frame[block.beam, FRACTION] * power_behind
         bundle = empty_bundle()
         for p in range(len(images.order)):
             order = beams.strips.link[block.beam, ORDER] + images.order[p]
@@ -163,11 +173,12 @@ def sum_horizontal_edge(
             if not any_of(weight_here > 0.0):
                 continue
             x, h = images.x[p], images.h[p]
-            if collector.min_power > 0.0:
-                bound = free_space(tables, hypot(abs(h) + seen.h, seen.x - x))
+            if least > 0.0:
+                bound = free_space(tables, hypot(abs(h) + seen.h, seen.x - x)) * kept
+                bound = bound * images.fraction[p]
                 n_images = 2.0 * budget * (budget + 1.0) + 1.0
                 weight_here = apply_power_threshold(
-                    collector, workspace, bound, weight_here, n_images
+                    collector, workspace, least, bound, weight_here, n_images
                 )
             for a in range(2 * budget + 1):
                 across_in = math.sqrt(h * h + (z_in[a] - edge.z) ** 2)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.kernels.beam_hits import Hits
-from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Tree
+from raytrace.kernels.beams import CELL, FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.blocks import next_block
 from raytrace.kernels.bounds import free_space, leg_bound
 from raytrace.kernels.building import TraceGeometry
@@ -14,7 +14,7 @@ from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
 from raytrace.kernels.field_tables import FieldTables, phasor
 from raytrace.kernels.guard import is_stopped
-from raytrace.kernels.lanes import all_false, any_of, lanes_of, load
+from raytrace.kernels.lanes import all_false, any_of, lanes_of, load, minimum
 from raytrace.kernels.records import record_paths
 from raytrace.kernels.sums import empty_bundle, with_path
 from raytrace.kernels.unfolding import Leg, unfold
@@ -32,6 +32,7 @@ from raytrace.kernels.workspace import (
     add_bundle,
     apply_power_threshold,
     count_path,
+    least_power,
 )
 
 
@@ -71,6 +72,7 @@ def sum_reflections(
     while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
+        least = least_power(collector, tree.link[block.beam, CELL])
         i = block.beam
         order = tree.link[i, ORDER]
         n, length, ux, uy = unfold(building.plan, tree.link, tree.beam, i, (block.x, block.y), leg)
@@ -81,10 +83,11 @@ def sum_reflections(
         )
         n_images = 2 * (geometry.max_reflections - order) + 1
         weight_here = block.weight
-        if collector.min_power > 0.0:
-            bound = free_space(tables, length) * leg_bound(geometry, tables, leg, n, length, order)
+        if least > 0.0:
+            kept = leg_bound(geometry, tables, leg, n, length, order)
+            bound = free_space(tables, length) * minimum(kept, tree.beam[i, FRACTION])
             weight_here = apply_power_threshold(
-                collector, workspace, bound, weight_here, float(n_images)
+                collector, workspace, least, bound, weight_here, float(n_images)
             )
         bundle = empty_bundle()
         k, side, grazing = zero, zero, all_false()

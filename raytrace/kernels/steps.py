@@ -113,5 +113,13 @@ def rows_of(steps: Steps, rows: Ints) -> Steps:
 
 
 def joined(parts: Sequence[Steps]) -> Steps:
-    """Return the steps of the paths of several lists."""
-    return Steps._make(np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+    """Return the steps of the paths of several lists, with columns for the longest one."""
+    most = max(part.kind.shape[1] for part in parts)
+    wide: list[Steps] = []
+    for part in parts:
+        n, width = part.kind.shape
+        whole = new_steps(n, most)
+        whole.kind[:, :width], whole.slab[:, :width] = part.kind, part.slab
+        whole.frame[:, :width] = part.frame
+        wide.append(part._replace(kind=whole.kind, slab=whole.slab, frame=whole.frame))
+    return Steps._make(np.concatenate(arrays) for arrays in zip(*wide, strict=True))

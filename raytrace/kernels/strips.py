@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Floats, Int32s, Ints
-from raytrace.kernels.beam_hits import HIT_BYTES, Hits, Targets
 from raytrace.kernels.beams import (
     BOUNCES,
     CELL,
@@ -27,18 +26,19 @@ from raytrace.kernels.beams import (
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.guard import Guard, is_stopped, may_hold
 from raytrace.kernels.lanes import (
-    WIDTH,
-    Lanes,
     Number,
-    any_of,
-    lanes_of,
-    load,
-    maximum,
-    minimum,
-    store,
-    where,
 )
-from raytrace.kernels.plan_view import GRAZING_M, PlanView
+from raytrace.kernels.losses import (
+    IS_MIRRORED,
+    IS_TRANSMITTED,
+    PASSES,
+    Incidence,
+    Limits,
+    has_strong_way,
+    incidence,
+    largest_fraction,
+)
+from raytrace.kernels.plan_view import PlanView
 from raytrace.kernels.rows import copy_row, enlarged, resized
 
 STEEPEST = 1e5
@@ -46,6 +46,9 @@ STEEPEST = 1e5
 
 SLIVER_M = 1e-10
 """Narrowest interval of an edge that is traced [m]."""
+
+FRACTION = 7
+"""Column of `StripTree.frame`."""
 
 
 class StripTree(NamedTuple):
@@ -56,8 +59,8 @@ class StripTree(NamedTuple):
     link
         (n, 8) int32, as in `beams.Tree`.
     frame
-        (n, 7) x = f[0] X + f[1] Y + f[2] and h = f[3] X + f[4] Y + f[5] of a point of the beam's
-        cell; f[6] is -1 where the frame is mirrored, else 1.
+        (n, 8) x = f[0] X + f[1] Y + f[2] and h = f[3] X + f[4] Y + f[5] of a point of the beam's
+        cell; f[6] is -1 where the frame is mirrored, else 1; f[7] as `beams.FRACTION`.
     first
         (n + 1,) corners of beam i's polygon are rays[first[i]:first[i + 1]].
     rays
@@ -70,20 +73,26 @@ class StripTree(NamedTuple):
     rays: Floats
 
 
-STRIP_BYTES, RAY_BYTES, SEEN_BYTES = 8 * 4 + 7 * 8 + 8, 2 * 8, 4 * 8
-"""Sizes of a beam without its corners, of a corner, and of a row of `seen` (`hit_from_strip`)."""
+STRIP_BYTES, RAY_BYTES = 8 * 4 + 8 * 8 + 8, 2 * 8
+"""Sizes of a beam without its corners, and of a corner."""
+
+
+def no_strips() -> StripTree:
+    """Return a tree without beams."""
+    link, frame, rays = np.empty((0, 8), np.int32), np.empty((0, 8)), np.empty((0, 2))
+    return StripTree(link, frame, np.zeros(1, np.int64), rays)
 
 
 @jit()
 def edge_frame(view: PlanView, e: int) -> Floats:
-    """Frame (7,) of an edge of the plan view, h into its cell."""
+    """Frame (8,) of an edge of the plan view, h into its cell."""
     x1, y1, x2, y2 = view.ends[e, 0], view.ends[e, 1], view.ends[e, 2], view.ends[e, 3]
     length = math.hypot(x2 - x1, y2 - y1)
     tx, ty = (x2 - x1) / length, (y2 - y1) / length
-    frame = np.empty(7)
+    frame = np.empty(8)
     frame[0], frame[1], frame[2] = tx, ty, -(tx * x1 + ty * y1)
     frame[3], frame[4], frame[5] = -ty, tx, ty * x1 - tx * y1
-    frame[6] = 1.0
+    frame[6] = frame[7] = 1.0
     return frame
 
 
@@ -199,18 +208,36 @@ def write_box(rays: Floats, length: float) -> None:
     rays[2, 1] = rays[3, 1] = STEEPEST
 
 
-PASSES, IS_MIRRORED, IS_TRANSMITTED = 0, 1, 2
-"""What becomes of a beam at an edge."""
-
-
 @jit(inner=True)
 def add_child(
-    view: PlanView, tree: StripTree, i: int, n: int, e: int, how: int, corners: int, rays: Floats
+    view: PlanView,
+    tree: StripTree,
+    at: tuple[int, int, int],
+    how: int,
+    corners: int,
+    rays: Floats,
+    fraction: float,
 ) -> None:
-    """Write beam n: the part of beam i that passes edge e, is mirrored there, or transmitted."""
+    """Write beam n: the part of beam i that passes edge e, is mirrored there, or transmitted.
+
+    Parameters
+    ----------
+    view, tree
+        Plan view and beams.
+    at
+        i, n and e.
+    how
+        `PASSES`, `IS_MIRRORED` or `IS_TRANSMITTED`.
+    corners, rays
+        Number of corners of its polygon, and these.
+    fraction
+        See `beams.FRACTION`.
+    """
+    i, n, e = at
     link, frame, first = tree.link, tree.frame, tree.first
     link_child(view, link, i, n, e, how == IS_MIRRORED)
     copy_row(frame, n, i)
+    frame[n, FRACTION] = fraction
     if how == IS_MIRRORED:
         mirror_frame(frame[n], view.plane[e])
     elif how == PASSES:
@@ -222,6 +249,32 @@ def add_child(
     first[n + 1] = first[n] + corners
 
 
+@jit(inline=True)
+def slopes_of(rays: Floats, n: int) -> tuple[float, float]:
+    """Least and largest slope m of the first n rays."""
+    low = high = rays[0, 1]
+    for k in range(1, n):
+        low, high = min(low, rays[k, 1]), max(high, rays[k, 1])
+    return low, high
+
+
+@jit(inner=True)
+def incidence_of_strip(
+    view: PlanView, frame: Floats, e: int, slopes: tuple[float, float], limits: Limits
+) -> Incidence:
+    """Incidence on edge e of a beam whose rays have slopes in an interval."""
+    if not limits.loss.is_active:
+        return Incidence(0.0, 0.0, 1.0)
+    low, high = slopes
+    nx, ny = view.plane[e, 0], view.plane[e, 1]
+    normal = (frame[0] * nx + frame[1] * ny, frame[3] * nx + frame[4] * ny)
+    met = incidence(0.0, normal, (low, 1.0), (high, 1.0))
+    _, h1 = in_frame(frame, view.ends[e, 0], view.ends[e, 1])
+    _, h2 = in_frame(frame, view.ends[e, 2], view.ends[e, 3])
+    slope = 0.0 if low * high <= 0.0 else min(abs(low), abs(high))
+    return Incidence(max(min(h1, h2), 0.0) * math.hypot(1.0, slope), met.least, met.largest)
+
+
 @jit(inner=True)
 def split_strip(
     view: PlanView,
@@ -229,52 +282,74 @@ def split_strip(
     tree: StripTree,
     i: int,
     n: int,
-    limits: tuple[int, int],
-    scratch: tuple[Floats, Floats],
+    limits: Limits,
+    scratch: tuple[Floats, Floats, Floats],
 ) -> int:
-    """Write the children of beam i from row n on; return the next row."""
-    work, out = scratch
-    link = tree.link
-    cell = link[i, CELL]
+    """Write the children of beam i from row n on; return the next row.
+
+    `scratch` holds two arrays for corners, and `left_out` of `losses.is_strong`.
+    """
+    work, out, left_out = scratch
+    link, frame = tree.link, tree.frame[i]
+    cell, order = link[i, CELL], int(link[i, ORDER])
     for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
         if view.line[e] == view.line[link[i, EDGE]]:
             continue
         corners = through_edge(view, tree, i, e, work, out)
         if corners == 0:
             continue
+        slopes = slopes_of(out, corners)
+        met = incidence_of_strip(view, frame, e, slopes, limits)
         for how in (PASSES, IS_MIRRORED):
             required = max(link[i, BOUNCES], bounces[e, how])
             possible = may_enter(link, i, view.beyond[e]) if how == 0 else view.profile[e] >= 0
-            if not possible or link[i, ORDER] + how + required > limits[0]:
+            if not possible or order + how + required > limits.max_reflections:
                 continue
-            add_child(view, tree, i, n, e, how, corners, out)
-            link[n, BOUNCES] = required
-            n += 1
-        if link[i, TRANSMITTED] < limits[1]:
-            n = transmit_strip(view, tree, i, n, e, scratch)
+            kept = frame[FRACTION] * largest_fraction(limits, view, e, how, met, order)
+            into = view.beyond[e] if how == PASSES else cell
+            distance = met.nearest
+            if has_strong_way(limits, order + how, into, (kept, distance), slopes, left_out):
+                add_child(view, tree, (i, n, e), how, corners, out, kept)
+                link[n, BOUNCES] = required
+                n += 1
+        if link[i, TRANSMITTED] < limits.max_transmissions:
+            kept = frame[FRACTION] * largest_fraction(limits, view, e, IS_TRANSMITTED, met, order)
+            n = transmit_strip(view, tree, (i, n, e), scratch, (limits, met, kept))
     return n
 
 
 @jit(inner=True)
 def transmit_strip(
-    view: PlanView, tree: StripTree, i: int, n: int, e: int, scratch: tuple[Floats, Floats]
+    view: PlanView,
+    tree: StripTree,
+    place: tuple[int, int, int],
+    scratch: tuple[Floats, Floats, Floats],
+    loss: tuple[Limits, Incidence, float],
 ) -> int:
-    """Write the beams that go through a solid wall, from row n on; return the next row."""
-    work, out = scratch
+    """Write the beams that go through a solid wall; return the next row.
+
+    `place` is as for `add_child`, `scratch` for `split_strip`; `loss` holds limits, incidence and
+    fraction of the power for `losses.is_strong`.
+    """
+    (i, n, e), (work, out, left_out), (limits, met, kept) = place, scratch, loss
+    order = int(tree.link[i, ORDER])
     for k in range(view.behind_first[e], view.behind_first[e + 1]):
         f = view.behind[k]
         back = (view.ends[f, 2], view.ends[f, 3], view.ends[f, 0], view.ends[f, 1])
         corners = through_edge(view, tree, i, e, work, out)
         corners = between(tree.frame[i], back, corners, work, out)
-        if corners > 0 and may_enter(tree.link, i, int(view.cell_of[f])):
-            add_child(view, tree, i, n, f, IS_TRANSMITTED, corners, out)
+        if corners == 0 or not may_enter(tree.link, i, int(view.cell_of[f])):
+            continue
+        at, slopes = (kept, met.nearest), slopes_of(out, corners)
+        if has_strong_way(limits, order, int(view.cell_of[f]), at, slopes, left_out):
+            add_child(view, tree, (i, n, f), IS_TRANSMITTED, corners, out, kept)
             n += 1
     return n
 
 
 def grow_strips(
-    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: tuple[int, int], guard: Guard
-) -> tuple[StripTree, bool]:
+    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: Limits, guard: Guard
+) -> tuple[StripTree, float, bool]:
     """Grow all beams from one side of an edge.
 
     Parameters
@@ -283,29 +358,25 @@ def grow_strips(
         As for `beams.grow_tree`.
     root, root_cell
         The edge, as seen from the cell that the beams go into.
-    limits
-        Maximum numbers of reflections and of transmissions through solid walls.
-    guard
-        May end the growth.
+    limits, guard
+        As for `beams.grow_tree`.
 
     Returns
     -------
-    strips, is_whole
-        The beams, and whether they are all; otherwise there are none.
+    strips, left_out, is_whole
+        As from `beams.grow_tree`.
     """
-    link, frame, first, rays, is_whole = grow_strip_arrays(
-        view, bounces, root, root_cell, limits, guard
-    )
-    return StripTree(link, frame, first, rays), is_whole
+    arrays = grow_strip_arrays(view, bounces, root, root_cell, limits, guard)
+    return StripTree(*arrays[:4]), *arrays[4:]
 
 
 @jit()
 def grow_strip_arrays(
-    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: tuple[int, int], guard: Guard
-) -> tuple[Int32s, Floats, Ints, Floats, bool]:
+    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: Limits, guard: Guard
+) -> tuple[Int32s, Floats, Ints, Floats, float, bool]:
     """Arrays of `grow_strips`."""
     link = np.zeros((256, 8), np.int32)
-    frame = np.empty((256, 7))
+    frame, left_out = np.empty((256, 8)), np.zeros(1)
     first = np.zeros((257, 1), np.int64)
     rays = np.empty((4096, 2))
     work, out = np.empty((256, 2)), np.empty((256, 2))
@@ -333,92 +404,9 @@ def grow_strip_arrays(
         while corners > len(out):
             work, out = enlarged(work), enlarged(out)
         tree = StripTree(link, frame, first[:, 0], rays)
-        n = split_strip(view, bounces, tree, i, n, limits, (work, out))
+        n = split_strip(view, bounces, tree, i, n, limits, (work, out, left_out))
         i += 1
     is_whole = i == n
     n = n if is_whole else 0
-    first_ray = resized(first, n + 1)[:, 0]
-    return resized(link, n), resized(frame, n), first_ray, resized(rays, first[n, 0]), is_whole
-
-
-def hit_from_strip(
-    tree: StripTree, targets: Targets, beams: Ints, max_hits: int, guard: Guard
-) -> tuple[Hits, Floats, int]:
-    """Find the points within beams from a segment.
-
-    Parameters
-    ----------
-    tree, targets
-        The beams and the points.
-    beams, max_hits
-        Which beams, and the number of hits after which no further beam is taken.
-    guard
-        May end the search.
-
-    Returns
-    -------
-    hits
-        Points and beams; the weight is that of the point in its cell.
-    seen
-        (n, 4) the point as (x, h) in the edge's frame, and the interval of the edge visible from it
-        [m].
-    done
-        How many of the beams were taken.
-    """
-    pair, weight, seen, done = hit_strip_arrays(tree, targets, beams, max_hits, guard)
-    return Hits(pair, weight), seen, done
-
-
-@jit()
-def hit_strip_arrays(
-    tree: StripTree, targets: Targets, beams: Ints, max_hits: int, guard: Guard
-) -> tuple[Int32s, Floats, Floats, int]:
-    """Arrays of `hit_from_strip`."""
-    pair, weight = np.empty((1024, 2), np.int32), np.empty((1024, 1))
-    seen, rows = np.empty((1024, 4)), np.empty((4, WIDTH))
-    n = done = 0
-    while done < len(beams) and n < max_hits and not is_stopped(guard):
-        i = int(beams[done])
-        cell, rays = tree.link[i, CELL], tree.rays[tree.first[i] : tree.first[i + 1]]
-        begin, last = targets.cell_points[cell], targets.cell_points[cell + 1]
-        needed = n + int(last - begin)
-        if not may_hold(guard, needed, len(pair), HIT_BYTES + SEEN_BYTES):
-            break
-        while needed > len(pair):
-            pair, weight, seen = enlarged(pair), enlarged(weight), enlarged(seen)
-        done += 1
-        for k in range(begin, last, WIDTH):
-            x, h = in_frame(tree.frame[i], load(targets.x[k:]), load(targets.y[k:]))
-            low, high = interval_through(rays, x, h)
-            visible = (high - low > SLIVER_M) & (h > GRAZING_M)
-            if not any_of(visible):
-                continue
-            low, high = where(visible, low, 0.0), where(visible, high, 0.0)
-            for row, column in enumerate((x, h, low, high)):
-                store(rows[row], column)
-            for at in range(k, min(k + WIDTH, last)):
-                if rows[2, at - k] == rows[3, at - k]:
-                    continue
-                pair[n, 0], pair[n, 1] = targets.number[at], i
-                weight[n, 0] = targets.weight[at]
-                for column in range(4):
-                    seen[n, column] = rows[column, at - k]
-                n += 1
-    return resized(pair, n), resized(weight, n)[:, 0], resized(seen, n), done
-
-
-@jit(inline=True)
-def interval_through(rays: Floats, x: Lanes, h: Lanes) -> tuple[Lanes, Lanes]:
-    """Smallest and largest u of the rays of a polygon through points; empty if low > high."""
-    low, high = lanes_of(1e300), lanes_of(-1e300)
-    last = len(rays) - 1
-    before = h * rays[last, 1] + rays[last, 0] - x
-    for j in range(last + 1):
-        here = h * rays[j, 1] + rays[j, 0] - x
-        left, right = (here >= 0.0) & (before < 0.0), (here < 0.0) & (before >= 0.0)
-        t = before / (before - here)
-        u = rays[j - 1, 0] + t * (rays[j, 0] - rays[j - 1, 0])
-        low = where(left | right, minimum(low, u), low)
-        high = where(left | right, maximum(high, u), high)
-        before = here
-    return low, high
+    first_ray, rays = resized(first, n + 1)[:, 0], resized(rays, first[n, 0])
+    return resized(link, n), resized(frame, n), first_ray, rays, left_out[0], is_whole

@@ -1,12 +1,12 @@
 """The legs from the transmitter to a vertical edge."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from raytrace.arrays import Bools, Floats, Int32s, Ints
-from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Tree
+from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.bounds import leg_bound
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
@@ -46,8 +46,8 @@ class LegsIn(NamedTuple):
     ----------
     order, n_interactions, length
         (n,) reflections, interactions, and horizontal length [m].
-    weight
-        (n,) weight of a grazing leg.
+    weight, fraction
+        (n,) weight of a grazing leg, and see `beams.FRACTION`.
     departure
         (n, 2) horizontal direction at the transmitter.
     has_height_limits
@@ -62,6 +62,7 @@ class LegsIn(NamedTuple):
     n_interactions: Ints
     length: Floats
     weight: Floats
+    fraction: Floats
     departure: Floats
     has_height_limits: Bools
     angles: Floats
@@ -88,7 +89,7 @@ def angles_of(legs: LegsIn, p: int) -> FaceAngles:
 
 def leg_bytes(tree: Tree) -> int:
     """Size of a row of `LegsIn`."""
-    return 14 * 8 + max_interactions(tree.link) * (5 * WIDTH + 2) * 8
+    return 15 * 8 + max_interactions(tree.link) * (5 * WIDTH + 2) * 8
 
 
 def legs_to_edge(
@@ -119,6 +120,7 @@ def legs_to_edge(
         np.empty(n, np.int64),
         np.empty(n),
         np.empty(n),
+        np.empty(n),
         np.empty((n, 2)),
         np.empty(n, np.bool_),
         np.empty((n, 7)),
@@ -126,17 +128,8 @@ def legs_to_edge(
         np.empty((n, n_max, 2), np.int64),
     )
     kept = fill_legs(view, tree, beams, weight, edge, legs, guard)
-    return LegsIn(
-        legs.order[:kept],
-        legs.n_interactions[:kept],
-        legs.length[:kept],
-        legs.weight[:kept],
-        legs.departure[:kept],
-        legs.has_height_limits[:kept],
-        legs.angles[:kept],
-        legs.interactions[:kept],
-        legs.types[:kept],
-    )
+    columns: Any = legs
+    return LegsIn(*(column[:kept] for column in columns))
 
 
 @jit()
@@ -165,6 +158,7 @@ def fill_legs(
         legs.departure[kept, 0], legs.departure[kept, 1] = lane(ux, 0), lane(uy, 0)
         legs.order[kept], legs.n_interactions[kept] = tree.link[i, ORDER], n
         legs.length[kept], legs.weight[kept] = lane(length, 0), weight[b]
+        legs.fraction[kept] = tree.beam[i, FRACTION]
         legs.has_height_limits[kept] = has_height_limits(leg, n)
         inv_length = 1.0 / math.hypot(dx, dy)
         angles = angles_towards(edge, lanes_of(dx * inv_length), lanes_of(dy * inv_length), rows)
@@ -181,5 +175,6 @@ def bounds_of_legs(geometry: TraceGeometry, tables: FieldTables, legs: LegsIn) -
     for p in range(len(legs.order)):
         leg, length = Leg(legs.interactions[p], legs.types[p]), lanes_of(legs.length[p])
         n, order = int(legs.n_interactions[p]), int(legs.order[p])
-        bounds[p] = lane(leg_bound(geometry, tables, leg, n, length, order), 0)
+        bound = lane(leg_bound(geometry, tables, leg, n, length, order), 0)
+        bounds[p] = min(bound, legs.fraction[p])
     return bounds

@@ -11,7 +11,7 @@ import numpy as np
 
 from raytrace.arrays import Floats
 from raytrace.kernels.beam_hits import Hits
-from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, ORDER, Tree
+from raytrace.kernels.beams import CELL, FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.blocks import Block, next_block
 from raytrace.kernels.bounds import leg_bound, wedge_bound
 from raytrace.kernels.building import TraceGeometry
@@ -59,6 +59,7 @@ from raytrace.kernels.workspace import (
     add_bundle,
     apply_power_threshold,
     count_path,
+    least_power,
 )
 
 
@@ -305,11 +306,13 @@ def sum_vertical_edge(
     while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
+        least = least_power(collector, beams.tree.link[block.beam, CELL])
         out = legs_from_edge(geometry, beams, block, leg, workspace.rows)
         off_edge = where(out.length < GRAZING_M, 0.0, block.weight)
         bound_out = lanes_of(1.0)
-        if collector.min_power > 0.0:
+        if least > 0.0:
             bound_out = leg_bound(geometry, tables, leg, out.n, out.length, out.order)
+            bound_out = minimum(bound_out, beams.tree.beam[block.beam, FRACTION])
         bundle = empty_bundle()
         for p in range(len(legs.order)):
             n_images = 2 * (geometry.max_reflections - out.order - legs.order[p]) + 1
@@ -317,14 +320,14 @@ def sum_vertical_edge(
                 break
             pair = pair_of(tables, edge, legs, p, out)
             weight = off_edge * legs.weight[p]
-            if collector.min_power > 0.0:
+            if least > 0.0:
                 bound = wedge_bound(
                     geometry, tables, edge.wedge.is_sheet,
                     (pair.terms.cos_minus, pair.terms.cos_plus), pair.sqrt_2kl, pair.total,
                     pair.order,
                 )  # fmt: skip
                 bound, n_paths = bound * bound_out * bounds_in[p], float(n_images)
-                weight = apply_power_threshold(collector, workspace, bound, weight, n_paths)
+                weight = apply_power_threshold(collector, workspace, least, bound, weight, n_paths)
             if any_of(weight > 0.0):
                 bundle = add_pair(
                     bundle, geometry, tables, block, pair, weight, workspace, collector

@@ -22,6 +22,8 @@ class Collector(NamedTuple):
         Sums over paths, and single paths.
     min_power
         Paths whose power is known to be below this are left out [fraction of the transmitted].
+    least
+        (n_cells,) the same for the receivers in a cell of the plan.
     guard
         May end the work.
     """
@@ -29,6 +31,7 @@ class Collector(NamedTuple):
     sums: Sums
     record: Record
     min_power: float
+    least: Floats
     guard: Guard
 
 
@@ -96,19 +99,32 @@ def add_bundle(sums: Sums, workspace: Workspace, n: int, bundle: Bundle) -> None
 
 
 @jit(inline=True)
+def least_power(collector: Collector, cell: int) -> float:
+    """Power threshold of paths to the receivers in a cell."""
+    return max(collector.min_power, collector.least[cell])
+
+
+@jit(inline=True)
 def apply_power_threshold(
-    collector: Collector, workspace: Workspace, bound: Lanes, weight: Lanes, n_paths: float
+    collector: Collector,
+    workspace: Workspace,
+    least: float,
+    bound: Lanes,
+    weight: Lanes,
+    n_paths: float,
 ) -> Lanes:
     """Set the weights of paths below the power threshold to 0 and record their bounds.
 
     Parameters
     ----------
     collector, workspace
-        The threshold and the sums, and the receivers.
+        The sums, and the receivers.
+    least
+        The threshold, see `least_power`.
     bound, weight, n_paths
         Bounds on the powers, the paths' weights, and how many there are at each receiver.
     """
-    below = bound < collector.min_power
+    below = bound < least
     if any_of(below & (weight > 0.0)):
         left = where(below, weight, 0.0) * n_paths
         add_left_out(collector.sums, workspace.receivers, bound, left, collector.min_power)

@@ -43,6 +43,9 @@ _CONTENTS = {FORMAT_VERSION: "the map of one transmitter", SEVERAL_VERSION: "map
 
 Contents = TypeVar("Contents")
 
+_UNLIMITED = -1
+"""`max_transmissions` where power alone limits the transmissions."""
+
 _MARKS = (FORMAT.encode(), b"rss_coherent_dbm")
 _MADE_WITH = "made_with_"
 _SPACING_TOLERANCE = 1e-6  # of a cell
@@ -154,10 +157,16 @@ def common_attributes(radio_map: MapContents) -> dict[str, Any]:
         "receiver_height_m": radio_map.grid.height_m,
         "cell_size_m": radio_map.grid.cell_size_m,
         **antenna_attributes(RECEIVE, radio_map.receive_antenna),
-        **asdict(radio_map.config),
+        **_limits(radio_map.config),
         **{f"{_MADE_WITH}{k}": v for k, v in radio_map.provenance.items()},
     }
     return {key: value for key, value in attributes.items() if value is not None}
+
+
+def _limits(config: TraceConfig) -> dict[str, Any]:
+    """Limits of the trace; `_UNLIMITED` for no number of transmissions."""
+    limits = asdict(config)
+    return limits | ({"max_transmissions": _UNLIMITED} if config.max_transmissions is None else {})
 
 
 def read_map_file(path: Path) -> dict[str, Any]:
@@ -296,12 +305,17 @@ def _config(file: Checked) -> TraceConfig:
     read: dict[str, Callable[[str], Any]] = {
         "max_reflections": file.integer,
         "max_diffractions": file.integer,
-        "max_transmissions": file.integer,
+        "max_transmissions": lambda name: _transmissions(file.integer(name, low=_UNLIMITED)),
         "min_power_dbm": lambda name: file.number(name, low=-np.inf),
         "max_paths": file.integer,
+        "dynamic_range_db": lambda name: file.number(name, low=_POSITIVE, high=np.inf),
     }
     names = file.attribute_names
     return TraceConfig(**{name: read[name](name) for name in read if name in names})
+
+
+def _transmissions(number: int) -> int | None:
+    return None if number == _UNLIMITED else number
 
 
 def _transmitter(file: Checked) -> Transmitter:

@@ -249,9 +249,18 @@ class Paths:
             None if self.steps is None else rows_of(self.steps, rows),
         )
 
+    def _of_width(self, most: int) -> Paths:
+        """Return the same paths with columns for that many interactions."""
+        more = most - self.interactions.shape[1]
+        kinds = np.pad(self.interactions, ((0, 0), (0, more)))
+        vertices = np.pad(self.vertices, ((0, 0), (0, more), (0, 0)), mode="edge")
+        return replace(self, interactions=kinds, vertices=vertices)
+
     @classmethod
     def joined(cls, parts: Sequence[Paths]) -> Paths:
         """Return the paths of several lists, one after the other; at least one list."""
+        most = max(paths.interactions.shape[1] for paths in parts)
+        parts = [paths._of_width(most) for paths in parts]
         steps = [paths.steps for paths in parts if paths.steps is not None]
         return cls(
             np.concatenate([paths.receiver for paths in parts]),

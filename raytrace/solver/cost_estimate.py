@@ -27,6 +27,7 @@ from raytrace.memory import memory_limit
 from raytrace.radio.transmitter import Transmitter
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import sums_in_work
+from raytrace.solver.dynamic_range import prepare_within_range
 from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
@@ -205,9 +206,8 @@ class _Sampler:
 
     def compile(self, config: TraceConfig) -> None:
         """Compile the kernels, whose time does not count."""
-        small = replace(
-            config, max_reflections=1, max_transmissions=min(config.max_transmissions, 1)
-        )
+        transmissions = 0 if config.max_transmissions == 0 else 1
+        small = replace(config, max_reflections=1, max_transmissions=transmissions)
         point = np.array([[self.grid.x[0], self.grid.y[0], self.grid.height_m]])
         with Workers(1, self.stop) as workers, suppress(MemoryLimitError):
             workers.run(self._traced, point, small, workers.guard(self.max_bytes))
@@ -257,8 +257,9 @@ class _Sampler:
         prepare(self.scene, self.transmitter.position, points, none, guard)
         preparing = time.perf_counter() - started
         started = time.perf_counter()
-        tracing = prepare(self.scene, self.transmitter.position, points, config, guard)
         evaluation = evaluation_of(self.scene.slabs, self.transmitter, config)
+        position = self.transmitter.position
+        tracing = prepare_within_range(self.scene, position, points, config, guard, evaluation)
         classes = path_classes(tracing)
         n_classes, chosen = len(classes), _some(classes)
         del classes  # the beams of each are dropped with it

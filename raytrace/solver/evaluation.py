@@ -29,7 +29,7 @@ def evaluation_of(
     receive_antenna
         The receivers' antenna; a vertical half-wave dipole of 0 dB peak gain by default.
     """
-    through_walls = config.max_transmissions > 0
+    through_walls = config.max_transmissions != 0
     tables = field_tables(
         transmitter, slabs, receive_antenna=receive_antenna, through_walls=through_walls
     )

@@ -1,7 +1,7 @@
 """The path classes of an extruded building: reflected only, over a vertical, a horizontal edge."""
 
 from abc import ABC, abstractmethod
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from raytrace.arrays import Floats, Ints
 from raytrace.config import TraceConfig
 from raytrace.geometry import edges
 from raytrace.kernels.beam_hits import Hits, hit_points, no_hits
-from raytrace.kernels.beams import ORDER, Tree, grow_tree
+from raytrace.kernels.beams import FRACTION, ORDER, Tree, grow_tree, no_tree
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import Guard
 from raytrace.kernels.horizontal_edge_legs import (
@@ -29,9 +29,10 @@ from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.records import Record, new_record, no_record
 from raytrace.kernels.reflections import ReflectionBeams, sum_reflections
 from raytrace.kernels.steps import PATH_BYTES, STEP_BYTES, Steps, new_steps
-from raytrace.kernels.strips import edge_frame, grow_strips, hit_from_strip
+from raytrace.kernels.strip_hits import hit_from_strip
+from raytrace.kernels.strips import edge_frame, grow_strips, no_strips
 from raytrace.kernels.sums import Sums, new_sums, sums_bytes
-from raytrace.kernels.unfolding import new_leg
+from raytrace.kernels.unfolding import max_interactions, new_leg
 from raytrace.kernels.vertical_edge_legs import (
     LegsIn,
     VerticalEdgeArrays,
@@ -46,6 +47,13 @@ from raytrace.results.paths import Paths
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import sums_in_work
 from raytrace.solver.limits import check_whole, nbytes, taking
+from raytrace.solver.loss_limits import (
+    Arrivals,
+    continuations,
+    edge_power,
+    limits_from_edge,
+    strong_arrivals,
+)
 from raytrace.solver.path_class import Evaluation, KeptRecord, PathClass
 from raytrace.solver.setup import BEAMS, Tracing
 
@@ -70,11 +78,11 @@ class _BeamClass(ABC, Generic[Beams]):
 
     def __init__(self, tracing: Tracing) -> None:
         self._tracing = tracing
-        self._kept: Beams | None = None
+        self._kept: tuple[Beams, float] | None = None
 
     @abstractmethod
-    def _grow(self) -> Beams:
-        """Grow the beams; they have no hits yet."""
+    def _grow(self) -> tuple[Beams, float]:
+        """Grow the beams, which have no hits yet; also bound the power in those not grown."""
 
     @abstractmethod
     def _n_beams(self, beams: Beams) -> int:
@@ -92,12 +100,15 @@ class _BeamClass(ABC, Generic[Beams]):
     def _write_points(self, beams: Beams, record: Record, points: Floats, steps: Steps) -> None:
         """Write points (n or 1, k, 3) [m] and steps of recorded paths."""
 
-    def _beams(self) -> Beams:
+    def _beams(self) -> tuple[Beams, float]:
         return self._grow() if self._kept is None else self._kept
 
     def _guard_beside(self, beams: Beams) -> Guard:
         """Return the guard of what is found within these beams."""
         return taking(self._tracing.guard, nbytes(beams, self._tracing.tree), BEAMS)
+
+    def _least(self) -> Floats:
+        return self._tracing.limits.loss.least
 
     def _new_sums(self) -> Sums:
         geometry = self._tracing.geometry
@@ -106,13 +117,13 @@ class _BeamClass(ABC, Generic[Beams]):
     def grow(self) -> int:
         """See `PathClass`."""
         self._kept = self._beams()
-        return self._n_beams(self._kept)
+        return self._n_beams(self._kept[0])
 
     def sum_paths(self, evaluation: Evaluation, beams: Ints | None = None) -> Sums:
         """See `PathClass`."""
-        grown, sums = self._beams(), self._new_sums()
+        (grown, left_out), sums = self._beams(), self._new_sums()
         guard = self._guard_beside(grown)
-        collector = Collector(sums, no_record(), evaluation.min_power, guard)
+        collector = Collector(sums, no_record(), evaluation.min_power, self._least(), guard)
         numbers = np.arange(self._n_beams(grown)) if beams is None else beams
         while len(numbers):
             batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
@@ -120,6 +131,7 @@ class _BeamClass(ABC, Generic[Beams]):
             self._evaluate(batch, evaluation.tables, collector)
             numbers = numbers[done:]
         check_whole(guard, True, HITS)
+        sums.left_out[np.unique(self._tracing.targets.number)] += left_out
         return sums
 
     def list_paths(self, evaluation: Evaluation) -> Paths:
@@ -135,7 +147,7 @@ class _BeamClass(ABC, Generic[Beams]):
             chosen = record._replace(
                 key=record.key[rows], gain=record.gain[rows], weight=record.weight[rows]
             )
-            n_max = self._max_interactions()
+            n_max = self._max_interactions(beams)
             points, steps = np.zeros((1, n_max + 2, 3)), new_steps(len(rows), n_max)
             self._write_points(beams, chosen, points, steps)
             check_whole(self._tracing.guard, True, PATHS)
@@ -146,30 +158,38 @@ class _BeamClass(ABC, Generic[Beams]):
 
     def _recorded(self, evaluation: Evaluation) -> tuple[Beams, Record]:
         """Return the beams with all their hits, and the paths of these."""
-        grown = self._beams()
+        grown, _ = self._beams()
         guard, n_beams = self._guard_beside(grown), self._n_beams(grown)
         beams, done = self._hit(grown, np.arange(n_beams), ALL_HITS, guard)
         check_whole(guard, done == n_beams, HITS)
         record = new_record(0)
         for _ in range(2):
-            taking(guard, int(record.used[0]) * self._path_bytes(), PATHS)
+            taking(guard, int(record.used[0]) * self._path_bytes(beams), PATHS)
             record = new_record(int(record.used[0]))
-            collector = Collector(self._new_sums(), record, evaluation.min_power, guard)
+            collector = Collector(
+                self._new_sums(), record, evaluation.min_power, self._least(), guard
+            )
             self._evaluate(beams, evaluation.tables, collector)
             check_whole(guard, True, PATHS)
         return beams, record
 
-    def _max_interactions(self) -> int:
-        config = self._tracing.config
-        return config.max_reflections + config.max_diffractions + config.max_transmissions
+    @abstractmethod
+    def _most_walls(self, beams: Beams) -> int:
+        """Most walls that the paths of these beams meet."""
 
-    def _path_bytes(self) -> int:
+    def _max_interactions(self, beams: Beams) -> int:
+        config, transmissions = self._tracing.config, self._tracing.config.max_transmissions
+        if transmissions is None:
+            transmissions = self._most_walls(beams)
+        return config.max_reflections + config.max_diffractions + transmissions
+
+    def _path_bytes(self, beams: Beams) -> int:
         """Size of a path with its record, and of all its copies."""
-        n_max = self._max_interactions()
+        n_max = self._max_interactions(beams)
         return COPIES_OF_PATHS * (24 * (n_max + 2) + STEP_BYTES * n_max + PATH_BYTES + 48)
 
     def _paths(self, beams: Beams, record: Record) -> Paths:
-        n, n_max = len(record.gain), self._max_interactions()
+        n, n_max = len(record.gain), self._max_interactions(beams)
         points, steps = np.zeros((n, n_max + 2, 3)), new_steps(n, n_max)
         self._write_points(beams, record, points, steps)
         check_whole(self._tracing.guard, True, PATHS)
@@ -181,11 +201,14 @@ class _BeamClass(ABC, Generic[Beams]):
 class Reflections(_BeamClass[ReflectionBeams]):
     """Line of sight and every sequence of reflections."""
 
-    def _grow(self) -> ReflectionBeams:
-        return ReflectionBeams(self._tracing.tree, no_hits())
+    def _grow(self) -> tuple[ReflectionBeams, float]:
+        return ReflectionBeams(self._tracing.tree, no_hits()), self._tracing.left_out
 
     def _n_beams(self, beams: ReflectionBeams) -> int:
         return len(beams.tree.link)
+
+    def _most_walls(self, beams: ReflectionBeams) -> int:
+        return max_interactions(beams.tree.link)
 
     def _hit(
         self, beams: ReflectionBeams, numbers: Ints, max_hits: int, guard: Guard
@@ -216,27 +239,42 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
             edge.x, edge.y, *_heights(edge, tracing.scene.height_m), edge.o_face_azimuth,
             new_wedge(edge.wedge_n, edge.o_slab, edge.n_slab),
         )  # fmt: skip
+        self._power_behind = edge_power(tracing.config, self._edge.wedge.is_sheet)
+        self._counts = continuations(tracing.scene, tracing.config).plain
 
-    def _legs_in(self) -> LegsIn:
-        tree, corners = self._tracing.tree, self._tracing.corners
+    def _legs_in(self) -> tuple[LegsIn, float]:
+        """Return the legs to the edge, and a bound on the power of paths over those left out."""
+        t, tree, corners = self._tracing, self._tracing.tree, self._tracing.corners
         mine = np.flatnonzero(corners.pair[:, 0] == self._vertex)
         mine = mine[np.argsort(tree.link[corners.pair[mine, 1], ORDER], kind="stable")]
         beams, weight = corners.pair[mine, 1], corners.weight[mine]
-        guard = taking(self._tracing.guard, len(beams) * leg_bytes(tree), LEGS)
-        legs = legs_to_edge(self._tracing.scene.view, tree, beams, weight, self._edge, guard)
+        to_edge = tree.beam[beams, :2] - (self._edge.x, self._edge.y)
+        order, length = tree.link[beams, ORDER].astype(np.int64), np.hypot(*to_edge.T)
+        arrivals = Arrivals(order, length, self._power_behind * tree.beam[beams, FRACTION])
+        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts)
+        guard = taking(t.guard, len(kept) * leg_bytes(tree), LEGS)
+        view = t.scene.view
+        legs = legs_to_edge(view, tree, beams[kept], weight[kept], self._edge, guard)
         check_whole(guard, True, LEGS)
-        return legs
+        return legs, left_out
 
-    def _grow(self) -> VerticalEdgeBeams:
-        t, legs = self._tracing, self._legs_in()
-        tree = Tree(np.empty((0, 8), np.int32), np.empty((0, 6)))
+    def _grow(self) -> tuple[VerticalEdgeBeams, float]:
+        t, (legs, left_out) = self._tracing, self._legs_in()
+        tree = no_tree()
         if len(legs.order):
-            limits = (t.config.max_reflections - int(legs.order[0]), t.config.max_transmissions)
+            arrivals = Arrivals(legs.order, legs.length, self._power_behind * legs.fraction)
+            limits = limits_from_edge(arrivals, t.limits, self._counts)
             root = (self._edge.x, self._edge.y)
             guard = taking(t.guard, nbytes(legs), LEGS)
-            tree, is_whole = grow_tree(t.scene.view, t.bounces, root, self._cells, limits, guard)
+            tree, behind, is_whole = grow_tree(
+                t.scene.view, t.bounces, root, self._cells, limits, guard
+            )
             check_whole(guard, is_whole, BEAMS)
-        return VerticalEdgeBeams(self._edge, legs, tree, no_hits())
+            left_out += behind
+        return VerticalEdgeBeams(self._edge, legs, tree, no_hits()), left_out
+
+    def _most_walls(self, beams: VerticalEdgeBeams) -> int:
+        return max_interactions(self._tracing.tree.link) + max_interactions(beams.tree.link)
 
     def _n_beams(self, beams: VerticalEdgeBeams) -> int:
         return len(beams.tree.link)
@@ -251,7 +289,7 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
         self, beams: VerticalEdgeBeams, tables: FieldTables, collector: Collector
     ) -> None:
         geometry, leg, bounds = self._tracing.geometry, new_leg(beams.tree.link), np.empty(0)
-        if collector.min_power > 0.0:
+        if collector.min_power > 0.0 or collector.least.any():
             bounds = bounds_of_legs(geometry, tables, beams.legs)
         workspace = new_workspace(geometry.max_reflections)
         sum_vertical_edge(geometry, tables, beams, bounds, leg, workspace, collector)
@@ -281,8 +319,11 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
             edge_frame(tracing.scene.view, self._near), edge.z, 1.0 if edge.wall_above else -1.0,
             new_wedge(2.0, edge.material, edge.material),
         )  # fmt: skip
+        self._power_behind = edge_power(tracing.config, True)
+        self._counts = continuations(tracing.scene, tracing.config).from_horizontal
 
-    def _images_in(self) -> ImagesIn:
+    def _images_in(self) -> tuple[ImagesIn, float]:
+        """Return the beams to the edge, and a bound on the power of paths over those left out."""
         t = self._tracing
         x1, y1, x2, y2 = t.scene.view.ends[self._near]
         length = np.hypot(x2 - x1, y2 - y1)
@@ -294,23 +335,41 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
         turned = (t.partial_walls[mine, 0] == self._far)[:, None]
         interval = np.where(turned, 1.0 - interval[:, ::-1], interval) * length
         frame, image = self._edge.frame, t.tree.beam[beams]
-        return ImagesIn(
+        images = ImagesIn(
             order=t.tree.link[beams, ORDER].astype(np.int64),
             beam=beams.astype(np.int64),
             x=frame[0] * image[:, 0] + frame[1] * image[:, 1] + frame[2],
             h=frame[3] * image[:, 0] + frame[4] * image[:, 1] + frame[5],
             low=np.ascontiguousarray(interval[:, 0]),
             high=np.ascontiguousarray(interval[:, 1]),
+            fraction=np.ascontiguousarray(image[:, FRACTION]),
         )
+        kept, left_out = strong_arrivals(self._arrivals(images), t.limits, self._counts)
+        columns: Any = images
+        return ImagesIn(*(column[kept] for column in columns)), left_out
 
-    def _grow(self) -> HorizontalEdgeBeams:
-        t, view, images = self._tracing, self._tracing.scene.view, self._images_in()
-        cell = int(np.searchsorted(view.cell_edges, self._near, side="right")) - 1
-        limits = (t.config.max_reflections - int(images.order[0]), t.config.max_transmissions)
-        guard = taking(t.guard, nbytes(images), LEGS)
-        strips, is_whole = grow_strips(view, t.bounces, self._near, cell, limits, guard)
-        check_whole(guard, is_whole, BEAMS)
-        return HorizontalEdgeBeams(self._edge, t.tree, images, strips, no_hits(), np.empty((0, 4)))
+    def _arrivals(self, images: ImagesIn) -> Arrivals:
+        aside = np.maximum(np.maximum(images.low - images.x, images.x - images.high), 0.0)
+        fraction = self._power_behind * images.fraction
+        along = np.column_stack([images.low - images.x, images.high - images.x])
+        sines = along / np.maximum(np.hypot(along, images.h[:, None]), 1e-12)
+        return Arrivals(images.order, np.hypot(aside, images.h), fraction, sines)
+
+    def _grow(self) -> tuple[HorizontalEdgeBeams, float]:
+        t, view, (images, left_out) = self._tracing, self._tracing.scene.view, self._images_in()
+        strips = no_strips()
+        if len(images.order):
+            cell = int(np.searchsorted(view.cell_edges, self._near, side="right")) - 1
+            limits = limits_from_edge(self._arrivals(images), t.limits, self._counts)
+            guard = taking(t.guard, nbytes(images), LEGS)
+            strips, behind, is_whole = grow_strips(view, t.bounces, self._near, cell, limits, guard)
+            check_whole(guard, is_whole, BEAMS)
+            left_out += behind
+        beams = HorizontalEdgeBeams(self._edge, t.tree, images, strips, no_hits(), np.empty((0, 4)))
+        return beams, left_out
+
+    def _most_walls(self, beams: HorizontalEdgeBeams) -> int:
+        return max_interactions(beams.tree.link) + max_interactions(beams.strips.link)
 
     def _n_beams(self, beams: HorizontalEdgeBeams) -> int:
         return len(beams.strips.link)

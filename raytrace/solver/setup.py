@@ -18,6 +18,7 @@ from raytrace.kernels.building import (
     image_heights,
 )
 from raytrace.kernels.guard import Guard, no_guard
+from raytrace.kernels.losses import COSINE_BINS, UNLIMITED, Limits, LossLimit
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.scene import Scene
 from raytrace.solver.limits import check_whole, nbytes, taking
@@ -39,8 +40,11 @@ class Tracing:
         The receivers, cell by cell.
     bounces
         (n_edges, 2) see `point_location.bounces_needed`.
-    tree
-        Beams from the transmitter.
+    limits
+        How far beams from the transmitter are grown.
+    tree, left_out
+        These beams, and a bound on the power of all paths in those that are too weak to be grown
+        [fraction of the transmitted].
     corners
         Corners of the plan view within these beams.
     partial_walls, intervals
@@ -54,7 +58,9 @@ class Tracing:
     geometry: TraceGeometry
     targets: Targets
     bounces: Ints
+    limits: Limits
     tree: Tree
+    left_out: float
     corners: Hits
     partial_walls: Int32s
     intervals: Floats
@@ -72,24 +78,30 @@ def prepare(
     receivers: Floats,
     config: TraceConfig,
     guard: Guard | None = None,
+    limits: Limits | None = None,
 ) -> Tracing:
     """Grow the beams from a transmitter.
 
     Parameters
     ----------
     scene, config
-        What is traced, and how far; power limits are not used.
+        What is traced, and how far; `min_power_dbm` is not used.
     position
         Of the transmitter [m].
     receivers
         (n, 3) positions [m]; no path reaches those outside the building.
     guard
         What may end the kernels; nothing by default.
+    limits
+        How far beams are grown (see `loss_limits.limits_from_transmitter`); as far as the numbers
+        of `config` allow by default.
 
     Raises
     ------
     SceneError
         Where the transmitter is not inside the building.
+    ValueError
+        Where neither a number nor a loss limits the transmissions.
     TraceStoppedError, MemoryLimitError
         Where the guard has ended a kernel.
     """
@@ -98,17 +110,21 @@ def prepare(
     root = _cells_of_transmitter(scene, (x, y, z))
     geometry = _geometry(scene, (x, y, z), receivers, config)
     band = [z, *np.unique(receivers[:, 2]), *(e.z for e in scene.horizontal_edges)]
-    bounces = bounces_needed(view, min(band), max(band), config.max_transmissions > 0)
-    limits = (config.max_reflections, config.max_transmissions)
-    tree, corners, partial_walls, intervals = _beams(scene, bounces, (x, y), root, limits, guard)
-    inside = (receivers[:, 2] > 0.0) & (receivers[:, 2] < scene.height_m)
+    bounces = bounces_needed(view, min(band), max(band), config.max_transmissions != 0)
+    limits = limits or limits_by_number(scene, config)
+    if config.max_transmissions is None and not limits.loss.is_active:
+        raise ValueError("max_transmissions = None: expected limits by loss")
+    beams = _beams(scene, bounces, (x, y), root, limits, guard)
+    tree, left_out, corners, partial_walls, intervals = beams
     return Tracing(
         scene,
         config,
         geometry,
-        targets_in(view, geometry.receivers.xy, inside),
+        _targets(scene, receivers),
         bounces,
+        limits,
         tree,
+        left_out,
         corners,
         partial_walls,
         intervals,
@@ -116,17 +132,49 @@ def prepare(
     )
 
 
+def limits_by_number(scene: Scene, config: TraceConfig) -> Limits:
+    """Return the limits of beams from the transmitter, without one by loss."""
+    order, transmissions = config.max_reflections, config.max_transmissions
+    no_slabs = np.zeros((0, COSINE_BINS, COSINE_BINS))
+    least, roots = np.zeros(len(scene.view.cell_edges) - 1), np.zeros((order + 1, 3))
+    loss = LossLimit(
+        False,
+        least,
+        0.0,
+        scene.height_m,
+        order,
+        no_slabs,
+        no_slabs,
+        roots,
+        np.zeros((0, 5)),
+        np.zeros(0),
+    )
+    return Limits(order, UNLIMITED if transmissions is None else transmissions, loss)
+
+
+def with_receivers(tracing: Tracing, receivers: Floats) -> Tracing:
+    """Return the same beams with other receivers (n, 3) [m], at heights between the others'."""
+    x, y, z = (float(coordinate) for coordinate in tracing.geometry.transmitter)
+    geometry = _geometry(tracing.scene, (x, y, z), receivers, tracing.config)
+    return replace(tracing, geometry=geometry, targets=_targets(tracing.scene, receivers))
+
+
+def _targets(scene: Scene, receivers: Floats) -> Targets:
+    inside = (receivers[:, 2] > 0.0) & (receivers[:, 2] < scene.height_m)
+    return targets_in(scene.view, np.ascontiguousarray(receivers[:, :2]), inside)
+
+
 def _beams(
     scene: Scene,
     bounces: Ints,
     root: tuple[float, float],
     root_cells: Ints,
-    limits: tuple[int, int],
+    limits: Limits,
     guard: Guard,
-) -> tuple[Tree, Hits, Int32s, Floats]:
+) -> tuple[Tree, float, Hits, Int32s, Floats]:
     """Grow the beams from a point; find the corners and partial walls within them."""
     view = scene.view
-    tree, is_whole = grow_tree(view, bounces, root, root_cells, limits, guard)
+    tree, left_out, is_whole = grow_tree(view, bounces, root, root_cells, limits, guard)
     check_whole(guard, is_whole, BEAMS)
     guard = taking(guard, nbytes(tree), BEAMS)
     corners, is_whole = hit_corners(view, tree, guard)
@@ -134,7 +182,7 @@ def _beams(
     guard = taking(guard, nbytes(corners), BEAMS)
     partial_walls, intervals, is_whole = hit_partial_walls(view, tree, guard)
     check_whole(guard, is_whole, BEAMS)
-    return tree, corners, partial_walls, intervals
+    return tree, left_out, corners, partial_walls, intervals
 
 
 def _geometry(
@@ -155,7 +203,7 @@ def _geometry(
         ),
         image_bounces(order),
         order,
-        config.max_transmissions,
+        limits_by_number(scene, config).max_transmissions,
     )
 
 

@@ -156,6 +156,8 @@ def _note_dark_cells(plan: FloorPlan, radio_map: RadioMap) -> None:
     remedy = f"more than --transmissions {transmissions}"
     if transmissions == 0:
         remedy = f"--preset building, or {remedy}"
+    elif transmissions is None:
+        remedy = "a lower power limit (--min-power)"
     note(f"no path reaches {dark.sum()} cells inside the building: try {remedy}")
 
 

@@ -1,0 +1,262 @@
+"""The least loss of beams while they grow: what every ray within a beam loses at least.
+
+A beam whose rays are all weaker than a given power is not grown (docs/theory.md, section 16).
+"""
+
+import math
+from typing import NamedTuple
+
+from raytrace.arrays import Floats
+from raytrace.kernels.compiling import jit
+from raytrace.kernels.plan_view import PlanView, cross
+
+COSINE_BINS = 64
+"""Intervals of the cosine of incidence, in which slabs have a least loss."""
+
+ROUNDING = 1e-6
+"""Intervals of cosines are widened by this fraction of a bin."""
+
+UNLIMITED = 1 << 20
+"""A number of transmissions that no path has."""
+
+PASSES, IS_MIRRORED, IS_TRANSMITTED = 0, 1, 2
+"""What becomes of a beam at an edge."""
+
+
+class LossLimit(NamedTuple):
+    """Which beams are too weak to be grown.
+
+    Attributes
+    ----------
+    is_active
+        Whether there is a limit.
+    least
+        (n_cells,) power below which beams are not grown into a cell [fraction of the transmitted].
+    power_at_1m
+        Largest received fraction of the power at 1 m in free space, both antennas included [m^2].
+    height, most_reflections
+        Of the ceiling [m], and the reflections of whole paths.
+    reflectance, transmittance
+        (n_slabs, COSINE_BINS, COSINE_BINS) largest fraction of the power that a slab reflects or
+        transmits, between the cosines of one interval and of another.
+    roots
+        (max_reflections + 1, 3) by the beam's wall reflections: shortest length before the root
+        [m], the fraction of the power at the root that is compared with `least`, and the sum of
+        the fractions over all ways to the root, each times the number of paths that it may
+        continue to (`solver.loss_limits`).
+    ways
+        (n, 5) ways from the transmitter to a horizontal edge: wall reflections, shortest length
+        [m], largest fraction of the power behind the edge, and the interval of the sines between
+        their directions and the edge's normal in the plan view; n = 0 for other roots.
+    further
+        (max_reflections + 1,) most paths that a beam continues to, by the reflections left; for
+        `ways`.
+    """
+
+    is_active: bool
+    least: Floats
+    power_at_1m: float
+    height: float
+    most_reflections: int
+    reflectance: Floats
+    transmittance: Floats
+    roots: Floats
+    ways: Floats
+    further: Floats
+
+
+class Limits(NamedTuple):
+    """How far beams are grown.
+
+    Attributes
+    ----------
+    max_reflections, max_transmissions
+        Maximum numbers of reflections, those required at floor and ceiling included, and of
+        transmissions through solid walls.
+    loss
+        The limit by loss.
+    """
+
+    max_reflections: int
+    max_transmissions: int
+    loss: LossLimit
+
+
+class Incidence(NamedTuple):
+    """How a beam meets an edge of the plan view.
+
+    Attributes
+    ----------
+    nearest
+        Lower bound on the horizontal distance from the root [m].
+    least, largest
+        Bounds on the cosine of the angle between its rays and the edge's normal, in the plan view.
+    """
+
+    nearest: float
+    least: float
+    largest: float
+
+
+@jit(inline=True)
+def incidence(
+    off: float, normal: tuple[float, float], one: tuple[float, float], other: tuple[float, float]
+) -> Incidence:
+    """Incidence of rays between two directions on a line.
+
+    Parameters
+    ----------
+    off
+        Distance of the root's image from the line [m].
+    normal
+        Unit normal of the line.
+    one, other
+        The outermost directions, of any length.
+    """
+    size_1, size_2 = math.hypot(one[0], one[1]), math.hypot(other[0], other[1])
+    if size_1 == 0.0 or size_2 == 0.0:
+        return Incidence(0.0, 0.0, 1.0)
+    cos_1 = abs(normal[0] * one[0] + normal[1] * one[1]) / size_1
+    cos_2 = abs(normal[0] * other[0] + normal[1] * other[1]) / size_2
+    skew_1 = cross(normal[0], normal[1], one[0], one[1])
+    skew_2 = cross(normal[0], normal[1], other[0], other[1])
+    along_1 = normal[0] * one[0] + normal[1] * one[1]
+    along_2 = normal[0] * other[0] + normal[1] * other[1]
+    least, largest = min(cos_1, cos_2), max(cos_1, cos_2)
+    if along_1 * along_2 <= 0.0:
+        least = 0.0
+    if skew_1 * skew_2 <= 0.0:
+        largest = 1.0
+    nearest = abs(off) / largest if largest > 1e-9 else 0.0
+    return Incidence(nearest, least, largest)
+
+
+@jit(inner=True)
+def largest_fraction(
+    limits: Limits, view: PlanView, e: int, how: int, met: Incidence, order: int
+) -> float:
+    """Largest fraction of the power that a beam keeps at edge e.
+
+    Parameters
+    ----------
+    limits, view, e, how
+        Limits, plan view, edge, and what becomes of the beam there.
+    met, order
+        How the beam meets it, and its wall reflections so far.
+    """
+    loss, profile = limits.loss, view.profile[e]
+    if not loss.is_active or profile < 0 or how == PASSES:
+        return 1.0
+    rise = (limits.max_reflections - order + 1) * loss.height
+    cos_elevation = met.nearest / math.sqrt(met.nearest * met.nearest + rise * rise)
+    low = max(int(met.least * cos_elevation * COSINE_BINS - ROUNDING), 0)
+    low, high = min(low, COSINE_BINS - 1), int(met.largest * COSINE_BINS + ROUNDING)
+    high = min(high, COSINE_BINS - 1)
+    table = loss.reflectance if how == IS_MIRRORED else loss.transmittance
+    largest = 0.0
+    for k in range(view.profile_intervals[profile], view.profile_intervals[profile + 1]):
+        slab = view.interval_slab[k]
+        if slab >= 0:
+            largest = max(largest, table[slab, low, high])
+    return largest
+
+
+@jit(inline=True)
+def arriving_power(limits: Limits, order: int, distance: float, column: int) -> float:
+    """Bound on the received fraction of the power at a distance [m] from the root.
+
+    `column` of `LossLimit.roots`: 1 for what is compared with the limit, 2 for all paths together.
+    """
+    roots = limits.loss.roots
+    length = max(roots[order, 0] + distance, 1e-9)
+    return roots[order, column] * limits.loss.power_at_1m / (length * length)
+
+
+@jit(inner=True)
+def is_strong(
+    limits: Limits, order: int, cell: int, fraction: float, distance: float, left_out: Floats
+) -> bool:
+    """Whether a beam is grown; if not, all that it may continue to is added to `left_out`.
+
+    Parameters
+    ----------
+    limits, order, cell
+        Limits, the beam's wall reflections, and the cell that it is in.
+    fraction, distance
+        Largest fraction of the power that it keeps, and its shortest length [m], from the root on.
+    left_out
+        (1,) bound on the power of all paths within beams that are not grown.
+    """
+    if not limits.loss.is_active:
+        return True
+    if fraction * arriving_power(limits, order, distance, 1) >= limits.loss.least[cell]:
+        return True
+    left_out[0] += fraction * arriving_power(limits, order, distance, 2)
+    return False
+
+
+@jit(inner=True)
+def along_edge(low: float, high: float, distance: float, rise: float) -> tuple[float, float]:
+    """Bounds on the cosine between rays and a horizontal edge.
+
+    Parameters
+    ----------
+    low, high
+        The same in the plan view.
+    distance, rise
+        Shortest horizontal length of the rays, and most that they rise over it [m].
+    """
+    cos_elevation = distance / math.sqrt(distance * distance + rise * rise)
+    least = low * cos_elevation if low > 0.0 else low
+    largest = high * cos_elevation if high < 0.0 else high
+    return least - ROUNDING, largest + ROUNDING
+
+
+@jit(inner=True)
+def has_strong_way(
+    limits: Limits,
+    order: int,
+    cell: int,
+    kept: tuple[float, float],
+    slopes: tuple[float, float],
+    left_out: Floats,
+) -> bool:
+    """`is_strong` for a beam from a horizontal edge, by the ways to it whose direction fits.
+
+    A diffracted ray makes the same angle with the edge as the arriving one.
+
+    Parameters
+    ----------
+    limits, order, cell, left_out
+        See `is_strong`.
+    kept
+        Its fraction and distance.
+    slopes
+        Of its rays, along the edge over away from it.
+    """
+    fraction, distance = kept
+    if not is_strong(limits, order, cell, fraction, distance, left_out):
+        return False
+    loss = limits.loss
+    if len(loss.ways) == 0:
+        return True
+    power, least = fraction * loss.power_at_1m, loss.least[cell]
+    missing = 0.0
+    low = slopes[0] / math.hypot(1.0, slopes[0])
+    high = slopes[1] / math.hypot(1.0, slopes[1])
+    for k in range(len(loss.ways)):
+        reflections, length = loss.ways[k, 0], loss.ways[k, 1]
+        left = int(loss.most_reflections - reflections - order)
+        if left < 0:
+            continue
+        total, rise = max(length + distance, 1e-9), (left + 1.0) * loss.height
+        before = along_edge(loss.ways[k, 3], loss.ways[k, 4], length, rise)
+        behind = along_edge(low, high, distance, rise)
+        if before[0] > behind[1] or behind[0] > before[1]:
+            continue
+        arriving = power * loss.ways[k, 2] / (total * total)
+        if arriving >= least:
+            return True
+        missing += arriving * loss.further[left]
+    left_out[0] += missing
+    return False

@@ -1,0 +1,156 @@
+"""Beams that are too weak are not grown: no strong path is missing, and the rest is bounded."""
+
+import math
+
+import numpy as np
+import pytest
+from buildings import GLASS, Building, box, door, wall
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from random_plans import random_building
+
+from raytrace import (
+    Grid,
+    Isotropic,
+    Layer,
+    Layered,
+    Paths,
+    RadioMap,
+    TraceConfig,
+    Transmitter,
+    compute_radio_map,
+    received_power,
+    trace_paths,
+)
+from raytrace.kernels.losses import COSINE_BINS
+from raytrace.radio.materials import MATERIALS, Slab
+from raytrace.radio.tables import field_tables
+from raytrace.solver.loss_limits import slab_bounds
+
+MOST = 20
+"""More transmissions than any path of the plans has."""
+
+THREE_ROOMS = Building(
+    box(9.0, 4.0).outline,
+    (
+        *box(9.0, 4.0).sheets,
+        *wall((3.0, 0.0), (3.0, 4.0), door(1.0, 2.0)),
+        *wall((6.0, 0.0), (6.0, 4.0), door(2.5, 3.5, filling=GLASS)),
+    ),
+)
+LAYERS = (("brick", 0.09), ("air", 0.19), ("plasterboard", 0.016))
+CAVITY = Slab.of(
+    Layered("cavity", tuple(Layer(MATERIALS[name], d) for name, d in LAYERS)), 0.296
+).as_wall()
+"""A layered wall, which resonates."""
+
+SOURCE = Transmitter((1.2345, 1.8123, 1.3))
+
+
+def keys(paths: Paths) -> dict[tuple[float, ...], float]:
+    """Powers of paths by receiver and points, rounded to micrometres."""
+    return {
+        (int(paths.receiver[k]), *np.round(paths.vertices[k, : n + 2].ravel(), 6).tolist()): p
+        for k, (n, p) in enumerate(
+            zip(paths.n_interactions, np.abs(paths.gain) ** 2 * paths.weight, strict=True)
+        )
+    }
+
+
+@pytest.mark.parametrize("number", [None, MOST])
+@given(seed=st.integers(0, 2**32 - 1), below_db=st.floats(50.0, 110.0))
+@settings(max_examples=4, derandomize=True)
+def test_no_strong_path_is_missing(number: int | None, seed: int, below_db: float) -> None:
+    building = random_building(seed, 3)
+    source, *receivers = building.random_points(4, seed)
+    transmitter = Transmitter((float(source[0]), float(source[1]), float(source[2])), 0.0)
+    whole, part = (
+        keys(trace_paths(building.scene, transmitter, np.array(receivers), config))
+        for config in (TraceConfig(2, 1, MOST), TraceConfig(2, 1, number, -below_db))
+    )
+    assert not part.keys() - whole.keys()
+    missing = [whole[key] for key in whole.keys() - part.keys()]
+    assert max(missing, default=0.0) < 10.0 ** (-0.1 * below_db)
+
+
+def map_of(config: TraceConfig, threads: int = 2) -> RadioMap:
+    grid = Grid.over((0.0, 0.0, 9.0, 4.0), 0.5, 1.1)
+    return compute_radio_map(THREE_ROOMS.scene, SOURCE, grid, config, threads=threads)
+
+
+@pytest.fixture(scope="module")
+def whole() -> RadioMap:
+    return map_of(TraceConfig(2, 1, MOST))
+
+
+@pytest.mark.parametrize("number", [None, MOST])
+@pytest.mark.parametrize("dynamic_range_db", [math.inf, 30.0, 10.0])
+@pytest.mark.parametrize("min_power_dbm", [-110.0, -60.0, -40.0])
+def test_what_is_missing_keeps_its_bound(
+    whole: RadioMap, number: int | None, dynamic_range_db: float, min_power_dbm: float
+) -> None:
+    config = TraceConfig(2, 1, number, min_power_dbm, dynamic_range_db=dynamic_range_db)
+    part = map_of(config)
+    everything, kept = (10.0 ** (m.rss_dbm / 10.0) for m in (whole, part))
+    assert part.left_out_db is not None
+    left = kept * 10.0 ** (part.left_out_db / 10.0)
+    some = kept > 0.0
+    assert (kept <= everything * (1.0 + 1e-12)).all()
+    assert (everything[some] <= (kept + left)[some] * (1.0 + 1e-12)).all()
+    assert np.isposinf(part.left_out_db[~some]).all()
+
+
+def test_a_low_limit_leaves_out_nothing(whole: RadioMap) -> None:
+    """The limit by loss alone finds what a large number of transmissions does."""
+    part = map_of(TraceConfig(2, 1, None, -400.0))
+    np.testing.assert_array_equal(part.rss_dbm, whole.rss_dbm)
+    np.testing.assert_array_equal(part.path_count, whole.path_count)
+    assert part.left_out_db is not None
+    assert (part.left_out_db < -50.0).all()
+
+
+def test_a_range_leaves_out_little() -> None:
+    whole, part = (
+        map_of(TraceConfig(2, 1, None, -120.0, dynamic_range_db=x)) for x in (60.0, 25.0)
+    )
+    assert (part.path_count < whole.path_count).any()
+    np.testing.assert_allclose(part.rss_dbm, whole.rss_dbm, atol=0.1)
+
+
+def test_it_depends_neither_on_threads_nor_on_other_receivers() -> None:
+    config = TraceConfig(2, 1, None, -80.0, dynamic_range_db=20.0)
+    maps = [map_of(config, threads) for threads in (1, 2, 3)]
+    for other in maps[1:]:
+        np.testing.assert_array_equal(other.rss_coherent_dbm, maps[0].rss_coherent_dbm)
+        np.testing.assert_array_equal(other.left_out_db, maps[0].left_out_db)
+    some = maps[0].grid.points()[::5]
+    found = received_power(THREE_ROOMS.scene, SOURCE, some, config)
+    np.testing.assert_allclose(found, maps[0].rss_dbm.ravel()[::5], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "slab", [Slab.of("concrete", 0.2), Slab.of("glass", 0.01), Slab.of("metal", 0.01), CAVITY]
+)
+def test_slabs_keep_no_more_than_their_bounds(slab: Slab) -> None:
+    transmitter = Transmitter((0.0, 0.0, 1.0), antenna=Isotropic())
+    tables = field_tables(transmitter, [slab], through_walls=True)
+    cosines = np.linspace(0.0, 1.0, 20011)
+    c = slab.material.coefficients(slab.thickness_m, transmitter.frequency_hz, cosines)
+    at = np.minimum((cosines * COSINE_BINS).astype(int), COSINE_BINS - 1)
+    for table, sign, te, tm in (
+        (tables.reflection, -1.0, c.r_te, c.r_tm),
+        (tables.transmission, 1.0, c.t_te, c.t_tm),
+    ):
+        bounds = slab_bounds(tables, table, sign)[0]
+        power = np.maximum(np.abs(te), np.abs(tm)) ** 2
+        assert (power <= bounds[at, at]).all()
+        assert (np.diff(bounds, axis=1)[np.triu_indices(COSINE_BINS - 1)] >= 0.0).all()
+        assert bounds[0, -1] == pytest.approx(1.001 * power.max(), rel=1e-3)
+
+
+def test_unlimited_transmissions_need_a_power() -> None:
+    with pytest.raises(ValueError, match="max_transmissions = None, but min_power_dbm = -inf"):
+        TraceConfig(max_transmissions=None)
+    with pytest.raises(ValueError, match=r"dynamic_range_db = 0\.0: expected a positive"):
+        TraceConfig(dynamic_range_db=0.0)
+    assert TraceConfig(3, 1, None, -120.0).max_transmissions is None
