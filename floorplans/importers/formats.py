@@ -14,6 +14,7 @@ from floorplans.importers.assembly.assemble import assemble
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported, UnusablePlanError
 from floorplans.importers.own_axes import oblique_deg, placed, turned
+from floorplans.importers.progress import N_STEPS, Progress, no_progress
 from floorplans.plan import FloorPlan
 
 Reader = Callable[[Path, ImportOptions], Draft | FloorPlan]
@@ -116,7 +117,12 @@ SAVE_AS = {
 _MAGIC = {b"AC10": ".dwg", b"%PDF": ".pdf", b"\xff\xd8\xff": ".jpg"}
 
 
-def import_plan(path: str | Path, options: ImportOptions | None = None) -> Imported:
+def import_plan(
+    path: str | Path,
+    options: ImportOptions | None = None,
+    *,
+    progress: Progress | None = None,
+) -> Imported:
     """Create a plan from another program's file.
 
     Parameters
@@ -125,6 +131,9 @@ def import_plan(path: str | Path, options: ImportOptions | None = None) -> Impor
         Its ending names the format; see `FORMATS`. A folder is read as an IMDF venue.
     options : ImportOptions, optional
         What the user specifies.
+    progress : callable, optional
+        Called as ``progress(done, total)`` with the numbers of finished and of all steps: reading
+        the file, finding the outline, checking the plan.
 
     Returns
     -------
@@ -137,14 +146,17 @@ def import_plan(path: str | Path, options: ImportOptions | None = None) -> Impor
     """
     options = options or ImportOptions()
     path = Path(path)
+    report = progress or no_progress
     try:
+        report(0, N_STEPS)
         drafted = read_draft(path, options)
+        report(1, N_STEPS)
         if isinstance(drafted, FloorPlan):
             return Imported.from_plan(drafted, options, path.name)
         turn_deg = 0.0 if options.keep_axes else oblique_deg(drafted.walls)
         own = turned(drafted, turn_deg) if turn_deg else drafted
         try:
-            return placed(assemble(own, options, path.name), drafted, turn_deg)
+            return placed(assemble(own, options, path.name, report), drafted, turn_deg)
         except UnusablePlanError as error:
             raise error.with_draft(placed(error.draft, drafted, turn_deg)) from None
     except PlanError as error:

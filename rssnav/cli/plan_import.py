@@ -4,6 +4,7 @@ import typer
 
 from atomicfiles import atomic_write
 from floorplans.importers import ImportOptions, UnusablePlanError, import_plan, layers_toml
+from rssnav.cli.console import one_progress
 from rssnav.cli.import_options import (
     CeilingHeight,
     CloseGaps,
@@ -105,7 +106,8 @@ def import_file(
     if output.exists() and not force:
         raise FileExistsError(17, "already exists; use --force to overwrite", str(output))
     try:
-        imported = import_plan(file, options)
+        with one_progress("import") as show:
+            imported = import_plan(file, options, progress=show)
     except UnusablePlanError as error:
         print_warnings(error.draft)
         write_draft(error.draft, output, force)

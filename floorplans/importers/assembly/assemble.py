@@ -28,6 +28,7 @@ from floorplans.importers.defaults import (
 )
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported, ImportRecord
+from floorplans.importers.progress import N_STEPS, Progress, no_progress
 from floorplans.materials import MATERIALS, PlanMaterial
 from floorplans.plan import FloorPlan
 from floorplans.repair.geometry import tidy_point
@@ -46,7 +47,9 @@ _NO_WALL = tuple(NO_WALL.format(kind=kind) for kind in ("door", "passage", "wind
 _GIVEN_BY_USER = ("name", "height_m", "floor_material", "ceiling_material", "source", "start")
 
 
-def assemble(draft: Draft, options: ImportOptions, source_file: str) -> Imported:
+def assemble(
+    draft: Draft, options: ImportOptions, source_file: str, progress: Progress = no_progress
+) -> Imported:
     """Create a plan from a draft.
 
     Parameters
@@ -55,6 +58,8 @@ def assemble(draft: Draft, options: ImportOptions, source_file: str) -> Imported
     options : ImportOptions
     source_file : str
         Name of the file the draft is from.
+    progress : callable
+        Called as ``progress(done, total)`` with the numbers of steps, of which one is done before.
 
     Returns
     -------
@@ -72,9 +77,11 @@ def assemble(draft: Draft, options: ImportOptions, source_file: str) -> Imported
     height_m = options.height_m or draft.height_m or HEIGHT_M
     best: tuple[ImportRecord, Building] | None = None
     for building in buildings(draft, _walls(draft, options, height_m), options, height_m):
+        progress(2, N_STEPS)
         record = _record(draft, options, building, height_m, source_file)
         imported = _checked(record)
         if imported is not None:
+            progress(N_STEPS, N_STEPS)
             return imported
         best = best or (record, building)
     if best is None:

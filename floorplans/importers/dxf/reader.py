@@ -249,9 +249,13 @@ def _check_number(curves: Mapping[Material, Sequence[Curve]]) -> None:
 
 def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:
     """Walls on unpaired lines, except beside a wall's face."""
-    wide = area.buffer(_AT_FACE_M)
-    for line, material in bodies.singles:
-        for part in shapely.get_parts(line.difference(wide)):
+    wide = shapely.get_parts(area.buffer(_AT_FACE_M))
+    lines = np.array([line for line, _ in bodies.singles], dtype=object)
+    line_of, near = shapely.STRtree(wide).query(lines, "intersects")
+    beside = np.split(near, np.searchsorted(line_of, np.arange(1, len(lines))))
+    for (line, material), parts in zip(bodies.singles, beside, strict=bool(len(lines))):
+        free = line.difference(shapely.union_all(wide[parts])) if len(parts) else line
+        for part in shapely.get_parts(free):
             if part.length > min(_MIN_SINGLE_M, line.length / 2):
                 (x0, y0), *_, (x1, y1) = part.coords
                 yield RawWall((x0, y0), (x1, y1), None, material)

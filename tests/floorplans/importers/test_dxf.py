@@ -512,3 +512,10 @@ def test_any_bytes_after_the_first_raise_nothing_but_plan_errors(tmp_path: Path)
         (tmp_path / "broken.dxf").write_bytes(data[:at] + rng.randbytes(40) + data[at + 40 :])
         with suppress(PlanError):
             import_plan(tmp_path / "broken.dxf")
+
+
+def test_progress_counts_the_steps_of_an_import(tmp_path: Path) -> None:
+    seen: list[tuple[int, int]] = []
+    path = draw.save(draw.flat_of_bodies(), tmp_path)
+    import_plan(path, progress=lambda done, total: seen.append((done, total)))
+    assert seen == [(done, 3) for done in range(4)]
