@@ -232,7 +232,7 @@ class Reflections(_BeamClass[ReflectionBeams]):
 class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
     """Every path that one vertical edge diffracts."""
 
-    def __init__(self, tracing: Tracing, edge: edges.VerticalEdge) -> None:
+    def __init__(self, tracing: Tracing, edge: edges.VerticalEdge, counts: Floats) -> None:
         super().__init__(tracing)
         self._cells, self._vertex = edge.cells, edge.vertex
         self._edge = VerticalEdgeArrays(
@@ -240,7 +240,7 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
             new_wedge(edge.wedge_n, edge.o_slab, edge.n_slab),
         )  # fmt: skip
         self._power_behind = edge_power(tracing.config, self._edge.wedge.is_sheet)
-        self._counts = continuations(tracing.scene, tracing.config).plain
+        self._counts = counts
 
     def _legs_in(self) -> tuple[LegsIn, float]:
         """Return the legs to the edge, and a bound on the power of paths over those left out."""
@@ -312,7 +312,9 @@ def _heights(edge: edges.VerticalEdge, height_m: float) -> tuple[float, float]:
 class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
     """Every path that leaves one side of a horizontal edge (side 0 or 1 of its plan edges)."""
 
-    def __init__(self, tracing: Tracing, edge: edges.HorizontalEdge, side: int) -> None:
+    def __init__(
+        self, tracing: Tracing, edge: edges.HorizontalEdge, side: int, counts: Floats
+    ) -> None:
         super().__init__(tracing)
         self._near, self._far = edge.plan_edges[side], edge.plan_edges[1 - side]
         self._edge = HorizontalEdgeArrays(
@@ -320,7 +322,7 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
             new_wedge(2.0, edge.material, edge.material),
         )  # fmt: skip
         self._power_behind = edge_power(tracing.config, True)
-        self._counts = continuations(tracing.scene, tracing.config).from_horizontal
+        self._counts = counts
 
     def _images_in(self) -> tuple[ImagesIn, float]:
         """Return the beams to the edge, and a bound on the power of paths over those left out."""
@@ -421,9 +423,14 @@ def path_classes(tracing: Tracing) -> list[PathClass]:
     scene = tracing.scene
     at_vertex = np.bincount(tracing.corners.pair[:, 0], minlength=int(scene.view.vertex.max()) + 1)
     at_wall = np.bincount(tracing.partial_walls[:, 0], minlength=len(scene.view.line))
-    vertical = [(at_vertex[e.vertex], OverVerticalEdge(tracing, e)) for e in scene.vertical_edges]
+    counts = continuations(scene, tracing.config)
+    vertical = [
+        (at_vertex[e.vertex], OverVerticalEdge(tracing, e, counts.plain))
+        for e in scene.vertical_edges
+    ]
+    over = counts.from_horizontal
     horizontal = [
-        (at_wall[list(e.plan_edges)].sum(), OverHorizontalEdge(tracing, e, side))
+        (at_wall[list(e.plan_edges)].sum(), OverHorizontalEdge(tracing, e, side, over))
         for e in scene.horizontal_edges
         for side in (0, 1)
     ]

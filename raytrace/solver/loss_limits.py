@@ -31,35 +31,43 @@ class Continuations(NamedTuple):
         (max_reflections + 1,) paths without a further diffraction, one height for all of a path.
     from_horizontal
         (max_reflections + 1,) the same behind a horizontal edge, before which heights vary too.
-    with_edges
-        (max_reflections + 1,) paths from the transmitter, each diffracted one with the largest gain
-        of an edge.
     """
 
     plain: Floats
     from_horizontal: Floats
-    with_edges: Floats
 
 
 def continuations(scene: Scene, config: TraceConfig) -> Continuations:
     """Count most paths: a sequence of reflecting lines and a height give one path at most."""
+    sequences, heights, pairs = _choices(scene, config)
+    order = config.max_reflections
+    return Continuations(
+        np.convolve(sequences, heights)[: order + 1], np.convolve(sequences, pairs)[: order + 1]
+    )
+
+
+def _choices(scene: Scene, config: TraceConfig) -> tuple[Floats, Floats, Floats]:
+    """Sequences of so many lines; heights, and pairs of heights, of so many reflections."""
     view, order = scene.view, config.max_reflections
     n_lines = len(np.unique(view.line[view.profile >= 0]))
     sequences = np.array([1.0] + [n_lines * (n_lines - 1.0) ** q for q in range(order)])
-    heights = 2.0 * np.arange(order + 1) + 1.0
-    pairs = 2.0 * np.arange(order + 1) * (np.arange(order + 1) + 1.0) + 1.0
-    plain, from_horizontal = (
-        np.convolve(sequences, each)[: order + 1] for each in (heights, pairs)
-    )
-    with_edges = plain.copy()
+    left = np.arange(order + 1.0)
+    return sequences, 2.0 * left + 1.0, 2.0 * left * (left + 1.0) + 1.0
+
+
+def _with_edges(scene: Scene, config: TraceConfig) -> Floats:
+    """Most paths from the transmitter, each diffracted one with the largest gain of its edge."""
+    sequences, heights, pairs = _choices(scene, config)
+    size = config.max_reflections + 1
+    found = np.convolve(sequences, heights)[:size]
     if config.max_diffractions:
-        legs = np.convolve(sequences, sequences)[: order + 1]
+        legs = np.convolve(sequences, sequences)[:size]
         wedges = [new_wedge(e.wedge_n, e.o_slab, e.n_slab) for e in scene.vertical_edges]
         vertical = sum(edge_power(config, wedge.is_sheet) for wedge in wedges)
         horizontal = 2.0 * len(scene.horizontal_edges) * edge_power(config, True)
-        with_edges += vertical * np.convolve(legs, heights)[: order + 1]
-        with_edges += horizontal * np.convolve(legs, pairs)[: order + 1]
-    return Continuations(plain, from_horizontal, with_edges)
+        found += vertical * np.convolve(legs, heights)[:size]
+        found += horizontal * np.convolve(legs, pairs)[:size]
+    return found
 
 
 def edge_power(config: TraceConfig, is_sheet: bool) -> float:
@@ -92,7 +100,7 @@ def limits_from_transmitter(
     if not least.any():
         return limits
     tables, roots = evaluation.tables, np.zeros((config.max_reflections + 1, 3))
-    roots[:, 2] = continuations(scene, config).with_edges[::-1]
+    roots[:, 2] = _with_edges(scene, config)[::-1]
     roots[:, 1] = 1.0 if config.max_transmissions is None else roots[:, 2]
     loss = LossLimit(
         True,
