@@ -77,13 +77,14 @@ def trace_assumptions(
 ) -> list[tuple[str, str]]:
     """List what a survey was traced with."""
     config = settings.config
+    transmissions = config.max_transmissions
     return [
         ("plan", f"{plan.name}, {len(plan.walls)} walls"),
         ("readings", str(len(survey))),
         ("frequency", f"{settings.frequency_hz / 1e9:g} GHz"),
         ("reflections, at most", str(config.max_reflections)),
         ("diffractions, at most", str(config.max_diffractions)),
-        ("transmissions, at most", str(config.max_transmissions)),
+        ("transmissions, at most", "no limit" if transmissions is None else str(transmissions)),
         ("transmit antenna", settings.transmit_antenna.describe()),
         ("receive antenna", settings.receive_antenna.describe()),
         ("RSS", "sum of the powers of the paths"),
