@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 from rssnav.arguments import require
 from rssnav.kernels.q_learning_from_readings import BY_CELL, INTERVALS, TOLERANCE, Sensor
 
-SENSITIVITY_DBM = -120.0
-"""Readings that are not above this level are "no signal" [dBm]: the thermal noise of 250 kHz."""
+SENSITIVITY_DBM = -150.0
+"""Readings that are not above this level are "no signal" [dBm]: the thermal noise of 250 Hz, which
+is less than the weakest cell of the paper's scenarios has."""
 
 MIN_THRESHOLD_DB = 1e-3
 MAX_INTERVALS = 1_000_000

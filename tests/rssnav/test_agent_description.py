@@ -138,7 +138,7 @@ def test_parameters_in_one_table():
         "states": "ToleranceStates",
         "states.threshold_db": 1.0,
         "terminal_dbm": -30.0,
-        "sensitivity_dbm": -120.0,
+        "sensitivity_dbm": -150.0,
         "fluctuation": "Fluctuation",
         "fluctuation.sigma_db": 2.0,
         "fluctuation.correlation": 0.0,

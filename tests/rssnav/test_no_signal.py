@@ -44,7 +44,7 @@ ANY_RULE = pytest.mark.parametrize("rule", RULES, ids=["exact", "tolerance", "in
 LINE_OF_SIGHT = ("--reflections", "0", "--diffractions", "0", "--transmissions", "0")
 DARK = slice(5, 8)  # columns of the map, the start's among them
 
-readings = st.just(-math.inf) | st.floats(-140.0, -20.0) | st.just(SENSITIVITY_DBM)
+readings = st.just(-math.inf) | st.floats(-170.0, -20.0) | st.just(SENSITIVITY_DBM)
 
 
 def dark_world(level_dbm: float = -math.inf) -> GridWorld:
