@@ -7,6 +7,7 @@ import pytest
 
 import floorplans
 from raytrace import RadioMap
+from rssnav import GridWorld, QLearning, RssAgent
 
 scenarios = pytest.mark.parametrize("name", ["scenario1", "scenario2"])
 
@@ -42,3 +43,13 @@ def test_no_cell_reads_more_than_was_sent(
     scenario_map: Callable[[str], RadioMap], name: str
 ) -> None:
     assert scenario_map(name).rss_dbm.max() < 25.0 - 40.0 + 10.0
+
+
+@scenarios
+@pytest.mark.parametrize("speed", [1, 2, 3])
+def test_the_paper_s_agent_hears_every_cell_and_knows_each_by_its_reading(
+    scenario_map: Callable[[str], RadioMap], name: str, speed: int
+) -> None:
+    world = GridWorld.from_map(floorplans.load(name), scenario_map(name), speed)
+    assert RssAgent().sensitivity_dbm < scenario_map(name).rss_dbm.min()
+    assert RssAgent().decision_process(world, QLearning()).readings is None
