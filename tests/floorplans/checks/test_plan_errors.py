@@ -37,7 +37,7 @@ CASES = {
     ),
     "unknown key of a wall": (
         edited(WALL_1, f"{WALL_1}\ncolour = 3"),
-        "office.toml: walls[1].colour: unknown key. Known: points, arc, material",
+        "office.toml: walls[1].colour: unknown key. Known: kind, points, arc, material",
     ),
     "unknown key of an opening": (
         door('kind = "door", ofset_m = 1, width_m = 1, head_m = 2'),
