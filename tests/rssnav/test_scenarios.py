@@ -2,7 +2,6 @@
 
 from functools import cache
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,8 +11,7 @@ from shapely.geometry import MultiLineString
 import floorplans
 from floorplans import FloorPlan
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
-from rssnav import GridWorld, QLearning, RssAgent, shortest_path
-from rssnav.maps import make_map
+from rssnav import GridWorld, shortest_path
 
 FLYING_HEIGHT_M = 2.0
 GOAL_DISTANCE_M = 2.0
@@ -124,11 +122,3 @@ def rooms(plan: FloorPlan) -> int:
     """Spaces left when every door is closed."""
     closed = shapely.linestrings([[wall.start, wall.end] for wall in plan.walls])
     return len(shapely.get_parts(shapely.polygonize([shapely.union_all(closed)])))
-
-
-@scenarios
-def test_the_rss_agent_tells_all_cells_apart(name: str, tmp_path: Path) -> None:
-    """Its receiver hears the weakest cell, and no two cells have the same RSS."""
-    plan = floorplans.load(name)
-    world = GridWorld.from_map(plan, make_map(plan, tmp_path / "map.h5"), speed=1)
-    assert RssAgent().decision_process(world, QLearning()).readings is None
