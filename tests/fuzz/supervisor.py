@@ -84,6 +84,7 @@ class Worker:
         self._folder = tempfile.TemporaryDirectory(dir=_fast_folder())
         self._state = _CONTEXT.RawArray("d", 3)
         self.task: Task | None = None
+        self._hang = ""
         self._start()
 
     def _start(self) -> None:
@@ -125,11 +126,14 @@ class Worker:
         return self._lost("hang") if self._hangs() else None
 
     def _hangs(self) -> bool:
+        """Whether the input takes too long; `_hang` says in which way."""
         began = self._state[0]
         waited_s = time.monotonic() - began if began else 0.0
         if waited_s <= HANG_S:
             return False
-        return waited_s > WAIT_S or processor_s(self._process.pid) - self._state[2] > HANG_S
+        computed = processor_s(self._process.pid) - self._state[2] > HANG_S
+        self._hang = f"more than {HANG_S:g} s of a processor" if computed else "it waits"
+        return computed or waited_s > WAIT_S
 
     def _lost(self, kind: str) -> Report:
         """Start again after the input that ended the process."""
@@ -140,9 +144,7 @@ class Worker:
         case = (Path(self._folder.name) / CURRENT).read_bytes()
         at = int(self._state[1])
         name = self.task.target
-        reason = (
-            f"exit code {code}" if kind == "crash" else f"more than {HANG_S:g} s of processor time"
-        )
+        reason = f"exit code {code}" if kind == "crash" else self._hang
         printed = (Path(self._folder.name) / OUTPUT).read_text(errors="replace")
         detail = f"{reason}\n{printed[-3000:]}"
         failure = Failure(name, kind, f"{name}: {kind}, {reason}", case, detail)
