@@ -52,6 +52,7 @@ def add_to(parent: typer.Typer) -> None:
     parent.command(
         "calibrate",
         epilog=examples(
+            "rssnav example",
             f"rssnav calibrate {EXAMPLE} --report calibration.html",
             f"rssnav calibrate {EXAMPLE} --material partition",
         ),

@@ -47,7 +47,9 @@ def add_to(parent: typer.Typer) -> None:
     parent.command(
         "validate",
         epilog=examples(
-            f"rssnav validate {EXAMPLE}", f"rssnav validate {EXAMPLE} --report validation.html"
+            "rssnav example",
+            f"rssnav validate {EXAMPLE}",
+            f"rssnav validate {EXAMPLE} --report validation.html",
         ),
     )(validate_plan)
 
