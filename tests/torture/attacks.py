@@ -10,6 +10,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,8 +27,11 @@ TRIES = 3
 """A job that has always ended before its signals is tried this many times as often as wanted."""
 SHORTEST = 0.2
 """A job that continues is taken to need at least this fraction of its time."""
+LONGEST_S = 120.0
+"""A process that runs this long after its signal is killed."""
 SLOW_S = 5.0
-"""An interrupted process ends within this, longer where more processes run than there are cores."""
+"""An interrupted process ends within this, besides waiting for a processor that others have; longer
+where more processes run than there are cores."""
 
 
 @dataclass(frozen=True)
@@ -120,15 +124,27 @@ def _end(
             time.sleep(0.002)
             if while_writing and temporary_in(folder) - known:
                 break
-        was_running, at = process.poll() is None, time.monotonic()
+        was_running, at, queued_s = process.poll() is None, time.monotonic(), _queued_s(process)
         process.send_signal(sent)
-        try:
-            _, errors = process.communicate(timeout=60.0)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            _, errors = process.communicate()
-    code = process.returncode
-    return _Ended(code, errors, was_running, time.monotonic() - at)
+        with ThreadPoolExecutor(1) as pool:
+            output = pool.submit(process.communicate)
+            waited_s = queued_s
+            while not output.done() and time.monotonic() - at < LONGEST_S:
+                waited_s = max(waited_s, _queued_s(process))
+                wait((output,), 0.02)
+            if not output.done():
+                process.kill()
+            _, errors = output.result()
+    took_s = time.monotonic() - at - (waited_s - queued_s)
+    return _Ended(process.returncode, errors, was_running, took_s)
+
+
+def _queued_s(process: subprocess.Popen[str]) -> float:
+    """How long a process has waited for a processor that others had [s]; 0 once it has ended."""
+    try:
+        return int(Path(f"/proc/{process.pid}/schedstat").read_text().split()[1]) / 1e9
+    except (OSError, IndexError):
+        return 0.0
 
 
 def wait_until_signals_are_handled(process: subprocess.Popen[str]) -> None:
