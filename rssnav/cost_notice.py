@@ -76,6 +76,8 @@ def paths_announcement(
 ) -> str | None:
     """Return what the paths to a point [m] will take, in words, if that is long; otherwise None.
 
+    An estimate that had to be extrapolated is always announced: it is too rough to keep silent.
+
     Raises
     ------
     SceneError
@@ -88,7 +90,7 @@ def paths_announcement(
     cost = estimate_cost(
         scene, transmitter, grid, config, threads=1, max_memory_bytes=max_memory_bytes
     )
-    if cost.seconds <= LONG_PATHS_S:
+    if cost.seconds <= LONG_PATHS_S and not cost.is_extrapolated:
         return None
     memory = _memory(cost.memory_bytes + cost.paths * BYTES_A_PATH * (config.max_reflections + 3))
     return (

@@ -31,6 +31,8 @@ GRID = Grid.over(PLAN.bounds, 1.0, 1.5)
 RECEIVERS = np.array([[9.0, 6.5, 2.0]])
 ENDLESS = TraceConfig(20, 1, max_transmissions=20)
 SMALL = TraceConfig(2, 1)
+MEMORY = 1 << 32
+"""More than beams fill in the time for which the tests let them grow [bytes]."""
 
 TRACES: dict[str, Callable[..., Any]] = {
     "map": partial(compute_radio_map, SCENE, SOURCE, GRID),
@@ -52,7 +54,7 @@ def test_a_stopped_trace_ends_within_a_second(
 ) -> None:
     stops_s = time.monotonic() + after_s
     with pytest.raises(TraceStoppedError):
-        trace(config, stop=lambda: time.monotonic() > stops_s, max_memory_bytes=1 << 30)
+        trace(config, stop=lambda: time.monotonic() > stops_s, max_memory_bytes=MEMORY)
     assert time.monotonic() - stops_s < 1.0
     for thread in threading.enumerate():
         if thread.name.startswith("ThreadPoolExecutor"):
@@ -78,7 +80,7 @@ def test_cells_are_counted_before_they_are_made() -> None:
     tracemalloc.start()
     try:
         with pytest.raises(MemoryLimitError, match="12000 x 8000 cells need at least"):
-            compute_radio_map(SCENE, SOURCE, fine, SMALL, max_memory_bytes=1 << 30)
+            compute_radio_map(SCENE, SOURCE, fine, SMALL, max_memory_bytes=MEMORY)
         assert tracemalloc.get_traced_memory()[1] < 16 << 20
     finally:
         tracemalloc.stop()
