@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from raytrace.arrays import Floats
+from raytrace.compilation import watched_compilation
 from raytrace.config import TraceConfig
 from raytrace.errors import SceneError, SceneWarning
 from raytrace.grid import Grid
@@ -143,7 +144,7 @@ def compute_radio_map(
     started = time.perf_counter()
     config = config or TraceConfig()
     evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
-    with Workers(threads, stop) as workers:
+    with watched_compilation() as compilation, Workers(threads, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
         needed_bytes = cells_bytes(scene, grid.x.size * grid.y.size, config, workers.n)
         guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
@@ -162,7 +163,7 @@ def compute_radio_map(
         grid=grid,
         transmitter=transmitter,
         config=config,
-        provenance=_provenance(scene, time.perf_counter() - started),
+        provenance=_provenance(scene, time.perf_counter() - started - compilation.seconds),
         receive_antenna=receive_antenna or HalfWaveDipole(),
     )
 

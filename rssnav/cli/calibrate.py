@@ -37,7 +37,6 @@ from rssnav.cli.survey_options import (
     load_survey,
     settings_of,
 )
-from rssnav.kernel_cache import tracer_cache
 from rssnav.measurements.calibrate import Calibration, Change, calibrate
 from rssnav.measurements.calibration_page import calibration_page
 from rssnav.measurements.hold_out import SQUARE_M
@@ -106,7 +105,7 @@ def calibrate_plan(
         "frequency": frequency,
     }
     settings = settings_of(read, options, threads, in_bytes(max_memory))
-    with stage_progress(compiles=not tracer_cache().n_compiled) as show:
+    with stage_progress() as show:
         found = calibrate(
             loaded,
             scene_of(loaded, edition),

@@ -26,6 +26,7 @@ from rssnav.experiments.progress import StageProgress
 from rssnav.messages import printable
 
 LINE_EVERY_S = 2.0
+COMPILING_EVERY_S = 10.0
 COMPILING = "compiling kernels (first use only)"
 
 
@@ -111,28 +112,29 @@ def note(sentence: str) -> None:
 
 
 @contextmanager
-def stage_progress(compiles: bool = False) -> Generator[StageProgress]:
+def stage_progress() -> Generator[StageProgress]:
     """Show the progress of stages: bars on a terminal, otherwise a line every few seconds.
 
-    Parameters
-    ----------
-    compiles : bool
-        Whether kernels must be compiled before the first stage advances.
+    Kernels that are compiled meanwhile are a stage of their own.
     """
+    from raytrace.compilation import watched_compilation
+
     console = Console(stderr=True)
     if not console.is_terminal:
-        if compiles:
-            note(COMPILING)
-        yield _Lines()
+        lines = _Lines()
+        with watched_compilation(lines.compiled):
+            yield lines
         return
     with _bars(console) as progress:
-        yield _Bars(progress, COMPILING if compiles else "preparing")
+        bars = _Bars(progress)
+        with watched_compilation(bars.compiled):
+            yield bars
 
 
 @contextmanager
-def one_progress(stage: str, compiles: bool = False) -> Generator[Callable[[int, int], None]]:
+def one_progress(stage: str) -> Generator[Callable[[int, int], None]]:
     """Show the progress of a single stage; see `stage_progress`."""
-    with stage_progress(compiles) as show:
+    with stage_progress() as show:
         yield lambda done, total: show(stage, done, total)
 
 
@@ -152,9 +154,9 @@ def _bars(console: Console) -> Progress:
 class _Bars:
     """A bar per stage, of unknown length until the stage advances."""
 
-    def __init__(self, progress: Progress, first: str) -> None:
+    def __init__(self, progress: Progress) -> None:
         self._progress = progress
-        self._waiting: TaskID | None = progress.add_task(first, total=None)
+        self._waiting: TaskID | None = progress.add_task("preparing", total=None)
         self._tasks: dict[str, TaskID] = {}
 
     def __call__(self, stage: str, done: int, total: int) -> None:
@@ -165,6 +167,12 @@ class _Bars:
             self._tasks[stage] = self._progress.add_task(stage, total=None)
         self._progress.update(self._tasks[stage], completed=done, total=total if done > 0 else None)
 
+    def compiled(self, count: int) -> None:
+        """Show how many kernels are compiled, in place of "preparing"."""
+        if self._waiting is None:
+            self._waiting = self._progress.add_task(COMPILING, total=None)
+        self._progress.update(self._waiting, description=f"{COMPILING}: {count}")
+
 
 class _Lines:
     """A line per stage every few seconds, none for short stages."""
@@ -173,8 +181,22 @@ class _Lines:
         self._last_s: dict[str, float] = {}
 
     def __call__(self, stage: str, done: int, total: int) -> None:
+        if self._is_due(stage):
+            note(f"{stage}: {done} of {total} ({100 * done // max(total, 1)} %)")
+
+    def compiled(self, count: int) -> None:
+        """Say that kernels are compiled, and every few seconds how many are."""
+        if COMPILING not in self._last_s:
+            note(COMPILING)
+            self._is_due(COMPILING)
+        elif self._is_due(COMPILING, COMPILING_EVERY_S):
+            note(f"{COMPILING}: {count}")
+
+    def _is_due(self, stage: str, every_s: float = LINE_EVERY_S) -> bool:
+        """Whether the last line of a stage, or its beginning, is long enough ago."""
         now_s = time.monotonic()
         last_s = self._last_s.setdefault(stage, now_s)
-        if now_s - last_s >= LINE_EVERY_S:
-            self._last_s[stage] = now_s
-            note(f"{stage}: {done} of {total} ({100 * done // max(total, 1)} %)")
+        if now_s - last_s < every_s:
+            return False
+        self._last_s[stage] = now_s
+        return True

@@ -10,11 +10,12 @@ import typer
 
 import floorplans
 from raytrace import TraceConfig, Transmitter, trace_paths
+from raytrace.compilation import watched_compilation
 from raytrace.radio.itu import DEFAULT_EDITION
 from raytrace.threads import n_threads
 from raytrace.trace import TRACER_VERSION
-from rssnav import GridWorld, LocationAgent, train
-from rssnav.cli.console import note, print_json, print_pairs
+from rssnav import GridWorld, LocationAgent, RssAgent, ToleranceStates, train
+from rssnav.cli.console import print_json, print_pairs, stage_progress
 from rssnav.cli.failures import EXIT_FAILURE, print_error
 from rssnav.cli.options import Json, examples
 from rssnav.kernel_cache import CacheState, learning_cache, tracer_cache
@@ -46,12 +47,16 @@ def add_to(parent: typer.Typer) -> None:
 
 def examine(as_json: Json = False) -> None:
     """Print versions, threads and the state of the compiled kernels, and run a self-test."""
+    with stage_progress(), watched_compilation() as compilation:
+        _load_kernels()
+        started_s = time.perf_counter()
+        faults = [*_tracer_faults(), *_learning_faults()]
     caches = {"tracer": tracer_cache(), "learning": learning_cache()}
-    if not all(cache.n_compiled for cache in caches.values()):
-        note("compiling kernels (first use only)")
-    started_s = time.perf_counter()
-    faults = [*_tracer_faults(), *_learning_faults()]
-    summary = _summary(caches, time.perf_counter() - started_s, faults)
+    times_s = {
+        "self_test_s": time.perf_counter() - started_s,
+        "compilation_s": compilation.seconds,
+    }
+    summary = _summary(caches, times_s, faults)
     if as_json:
         print_json(summary)
     else:
@@ -60,6 +65,18 @@ def examine(as_json: Json = False) -> None:
         print_error(fault)
     if faults:
         raise typer.Exit(EXIT_FAILURE)
+
+
+def _load_kernels() -> None:
+    """Call all kernels of ``map``, ``paths`` and ``train``, which compiles those not cached."""
+    plan = floorplans.load("flat")
+    config = TraceConfig(max_reflections=1, max_diffractions=1, max_transmissions=1)
+    radio_map = make_map(plan, config=config)
+    receiver = np.array([[*plan.require_start(), 1.0]])
+    trace_paths(scene_of(plan), radio_map.transmitter, receiver, config)
+    world = GridWorld.from_map(plan, radio_map)
+    for agent in (LocationAgent(), RssAgent(states=ToleranceStates(1.0), terminal_dbm=-30.0)):
+        train(world, agent, runs=1, episodes=1)
 
 
 def _tracer_faults() -> list[str]:
@@ -94,7 +111,9 @@ def _learning_faults() -> list[str]:
     return faults
 
 
-def _summary(caches: dict[str, CacheState], test_s: float, faults: list[str]) -> dict[str, Any]:
+def _summary(
+    caches: dict[str, CacheState], times_s: dict[str, float], faults: list[str]
+) -> dict[str, Any]:
     return {
         "rssnav": version("rssnav"),
         "python": platform.python_version(),
@@ -111,7 +130,7 @@ def _summary(caches: dict[str, CacheState], test_s: float, faults: list[str]) ->
             }
             for name, cache in caches.items()
         },
-        "self_test_s": test_s,
+        **times_s,
         "faults": faults,
     }
 
@@ -125,15 +144,18 @@ def _print(summary: dict[str, Any], caches: dict[str, CacheState]) -> None:
             ("materials", summary["material_edition"]),
             ("threads", summary["threads"]),
             *((f"{name} kernels", _state(cache)) for name, cache in caches.items()),
+            ("compilation", _compilation(summary["compilation_s"])),
             ("self-test", f"{'failed' if summary['faults'] else 'passed'}, "
                           f"{summary['self_test_s']:.1f} s"),
         ]
     )  # fmt: skip
 
 
+def _compilation(seconds: float) -> str:
+    return f"{seconds:.0f} s, first use only" if seconds else "not needed, all kernels are cached"
+
+
 def _state(cache: CacheState) -> str:
     if cache.folder is None:
         return "compiled at every start: no folder for them can be written"
-    if not cache.n_compiled:
-        return f"not compiled yet; cached in {cache.folder}"
     return f"{cache.n_compiled} compiled, {cache.n_bytes / 1e6:.1f} MB in {cache.folder}"

@@ -11,7 +11,6 @@ import typer
 
 from rssnav.cli.console import note, print_table, say, stage_progress
 from rssnav.cli.options import MAX_RUNS, MaxMemory, Seed, Style, Threads, examples, in_bytes
-from rssnav.kernel_cache import learning_cache, tracer_cache
 
 if TYPE_CHECKING:
     from rssnav.experiments.paper import Paper
@@ -112,7 +111,7 @@ def _run_paper(
     from rssnav.experiments.paper import run_paper
     from rssnav.pictures.style import chosen_style
 
-    with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
+    with stage_progress() as show, chosen_style(style):
         paper = run_paper(
             out,
             quick=quick,
@@ -140,7 +139,7 @@ def _run_study(
     from rssnav.experiments.studies import STUDIES, run_study
     from rssnav.pictures.style import chosen_style
 
-    with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
+    with stage_progress() as show, chosen_style(style):
         result = run_study(
             STUDIES[what],
             out,
@@ -166,7 +165,7 @@ def remake_report(
     from rssnav.experiments.paper import report_again
     from rssnav.pictures.style import chosen_style
 
-    with stage_progress(compiles=_must_compile()) as show, chosen_style(style):
+    with stage_progress() as show, chosen_style(style):
         paper = report_again(
             out,
             threads=threads,
@@ -175,10 +174,6 @@ def remake_report(
             notice=note,
         )
     _print(paper)
-
-
-def _must_compile() -> bool:
-    return not (tracer_cache().n_compiled and learning_cache().n_compiled)
 
 
 def _print(paper: Paper) -> None:

@@ -12,7 +12,7 @@ import typer
 import floorplans
 from floorplans import FloorPlan
 from raytrace import Paths, PathStatistics, SceneError, Transmitter, trace_paths
-from rssnav.cli.console import COMPILING, note, print_json, print_pairs, print_table
+from rssnav.cli.console import note, print_json, print_pairs, print_table, stage_progress
 from rssnav.cli.options import (
     PICTURE_SUFFIXES,
     AntennaName,
@@ -35,7 +35,6 @@ from rssnav.cli.options import (
 )
 from rssnav.cli.radio import Position, Radio, check_inside, radio_of, read_position
 from rssnav.cost_notice import paths_announcement
-from rssnav.kernel_cache import tracer_cache
 from rssnav.scenes import scene_of
 
 DRAWING_SUFFIXES = (*PICTURE_SUFFIXES, ".glb", ".html")
@@ -153,21 +152,20 @@ def _trace(
     max_memory_bytes: int | None,
 ) -> Paths:
     """All paths to a receiver, strongest first."""
-    if not tracer_cache().n_compiled:
-        note(COMPILING)
     try:
         scene = scene_of(plan, edition)
         announced = scene, transmitter, to, radio.config, max_memory_bytes
-        if (words := paths_announcement(*announced)) is not None:
-            note(words)
-        return trace_paths(
-            scene,
-            transmitter,
-            np.array([to]),
-            radio.config,
-            receive_antenna=radio.receive_antenna,
-            max_memory_bytes=max_memory_bytes,
-        )
+        with stage_progress():
+            if (words := paths_announcement(*announced)) is not None:
+                note(words)
+            return trace_paths(
+                scene,
+                transmitter,
+                np.array([to]),
+                radio.config,
+                receive_antenna=radio.receive_antenna,
+                max_memory_bytes=max_memory_bytes,
+            )
     except SceneError as error:
         raise SceneError(f"{name}: {error}") from error
 

@@ -40,7 +40,6 @@ from rssnav.cli.options import (
     in_bytes,
 )
 from rssnav.cli.radio import Radio, radio_of
-from rssnav.kernel_cache import tracer_cache
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M, cells_inside, make_map
 from rssnav.transmitter_maps import make_transmitter_maps
 
@@ -106,7 +105,7 @@ def map_plan(
         "receive_antenna": receive_antenna,
     }  # fmt: skip
     radio = radio_of(plan, loaded, source, options)
-    with stage_progress(compiles=not tracer_cache().n_compiled) as show:
+    with stage_progress() as show:
         maps = _traced(
             loaded,
             output,
@@ -176,7 +175,7 @@ def map_scenarios(
     """
     from rssnav.experiments.paper.scenarios import PLANS
 
-    with stage_progress(compiles=not tracer_cache().n_compiled) as show:
+    with stage_progress() as show:
         for name in PLANS:
             plan, file, picture = floorplans.load(name), out / f"{name}.h5", out / f"{name}.png"
 

@@ -53,7 +53,6 @@ from rssnav.cli.train_options import (
 from rssnav.discrete_states import StateRule, heard
 from rssnav.interrupts import INTERRUPTS
 from rssnav.keeping import lenient, save_or_rescue
-from rssnav.kernel_cache import learning_cache
 from rssnav.maps import Progress, require_map_for
 from rssnav.training import Checkpoint
 
@@ -204,7 +203,7 @@ class _Job:
         """Train the missing runs and save them; on Ctrl-C, save the finished ones."""
         stage = f"{self._agent.name} agent, speed {self._world.speed}"
         try:
-            with one_progress(stage, compiles=not learning_cache().n_compiled) as progress:
+            with one_progress(stage) as progress:
                 result = self._train(earlier, threads, progress)
         except TrainingInterrupted as interrupt:
             with INTERRUPTS.keeping():

@@ -31,7 +31,6 @@ from rssnav.cli.survey_options import (
     load_survey,
     settings_of,
 )
-from rssnav.kernel_cache import tracer_cache
 from rssnav.measurements.hold_out import SQUARE_M
 from rssnav.measurements.pages import cautions_of, save_validation_page, sentence_of
 from rssnav.measurements.survey import Survey
@@ -89,7 +88,7 @@ def validate_plan(
         "frequency": frequency,
     }
     settings = settings_of(read, options, threads, in_bytes(max_memory))
-    with stage_progress(compiles=not tracer_cache().n_compiled) as show:
+    with stage_progress() as show:
         traced = traced_dbm(
             scene_of(loaded, edition),
             read,

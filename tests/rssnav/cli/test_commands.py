@@ -253,7 +253,7 @@ def test_doctor_finds_nothing_wrong() -> None:
 
 
 def test_doctor_ends_with_1_when_the_tracer_is_wrong(monkeypatch) -> None:
-    monkeypatch.setattr("rssnav.cli.doctor.TraceConfig", lambda *_: TraceConfig(2, 0))
+    monkeypatch.setattr("rssnav.cli.doctor.TraceConfig", lambda *_, **__: TraceConfig(2, 0))
     result = run("doctor")
     assert result.exit_code == 1
     assert "expected 1 + 6 images" in result.stderr
