@@ -45,6 +45,7 @@ CAMERA_PITCH_DEG = -50.0
 FIELD_OF_VIEW_DEG = 45.0
 
 _TUBE_SIDES = 5
+_NARROW_PX = 600
 _FONT = "font:13px/1.5 sans-serif;pointer-events:none"
 _OLD_TITLE = "<title>trimesh: threejs viewer</title>"
 _PAGE_CHANGES = (
@@ -210,8 +211,8 @@ def scene_html(scene: trimesh.Scene, title: str, bar: ColourBar | None = None) -
 
 
 def _key(scene: trimesh.Scene, title: str) -> str:
-    """HTML of the title and the colour legend in the upper left corner of the page."""
-    rows = [f"<b>{escape(title)}</b>"]
+    """HTML of the title and the colour legend in the upper left corner; folded on a narrow page."""
+    rows: list[str] = []
     for name, mesh in scene.geometry.items():
         material = getattr(mesh.visual, "material", None)
         if isinstance(material, PBRMaterial) and material.name:
@@ -219,7 +220,13 @@ def _key(scene: trimesh.Scene, title: str) -> str:
             patch = f'<span style="color:rgb({red},{green},{blue})">&#9632;</span>'
             rows.append(f"{patch} {escape(name.removeprefix('walls:').replace('_', ' '))}")
     style = f"position:absolute;left:12px;top:10px;{_FONT}"
-    return f'<div style="{style}">{"<br>".join(rows)}</div>'
+    summary = (
+        f'<summary style="pointer-events:auto;cursor:pointer"><b>{escape(title)}</b></summary>'
+    )
+    return (
+        f'<details id="key" style="{style}" open>{summary}{"<br>".join(rows)}</details>'
+        f"<script>document.getElementById('key').open=innerWidth>={_NARROW_PX}</script>"
+    )
 
 
 def save_scene(

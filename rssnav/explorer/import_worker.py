@@ -21,6 +21,8 @@ from rssnav.messages import describe
 TOML = ".toml"
 RESULT = "result"
 """Name of the file that the plan's TOML text is written to."""
+REPORT = "report"
+"""Name of the file for a JSON list of lines on the import; there is none for a TOML file."""
 ENTITY_MARKS = {
     suffix: re.compile(kind.entity) for kind in FORMATS for suffix in kind.text_suffixes
 }
@@ -28,7 +30,7 @@ ENTITY_MARKS = {
 
 
 def main(file: str, limits: str) -> int:
-    """Write the plan in a file to `RESULT`; return the exit code."""
+    """Write the plan in a file to `RESULT`, and a report to `REPORT`; return the exit code."""
     chosen = Limits(**json.loads(limits))
     limit_process(chosen)
     path = Path(file)
@@ -60,7 +62,7 @@ def read_toml(path: Path, limits: Limits) -> str:
 
 
 def import_file(path: Path, limits: Limits) -> str:
-    """TOML text of the plan in a file of another program."""
+    """TOML text of the plan in a file of another program; its report is written."""
     n_entities = sum(1 for _ in ENTITY_MARKS[path.suffix].finditer(path.read_bytes()))
     if n_entities > limits.entities:
         raise PlanError(
@@ -70,6 +72,7 @@ def import_file(path: Path, limits: Limits) -> str:
         )
     imported = import_plan(path)
     limits.check_size(PlanSize.of(imported.plan), path.name)
+    Path(REPORT).write_text(json.dumps(imported.report), encoding="utf-8")
     return imported.toml()
 
 

@@ -333,7 +333,7 @@ def _empty_figure() -> figure:
     model.grid.visible = False
     for axis, name in ((model.xaxis, "x [m]"), (model.yaxis, "y [m]")):
         axis.update(
-            axis_label=name, axis_line_color=None, minor_tick_line_color=None,
+            axis_label=name, axis_line_color="#b0aca2", major_tick_in=0, minor_tick_line_color=None,
             major_tick_line_color="#b0aca2", axis_label_text_font=FONT, major_label_text_font=FONT,
             axis_label_text_font_style="normal", axis_label_text_color=INK,
         )  # fmt: skip

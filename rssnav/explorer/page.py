@@ -127,7 +127,7 @@ class Page:
             self._plan_panel.empty_upload()
         if self._changes.of("building", session.plan.walls, session.settings.height_m):
             self._new_figure()
-        if self._changes.of("plan", session.plan, session.settings):
+        if self._changes.of("plan", session.plan, session.settings, session.import_report):
             self._figure.show_marks(session.plan)
             self._plan_panel.show()
             self._name.object = plan_words(session.plan)

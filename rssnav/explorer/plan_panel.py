@@ -10,7 +10,7 @@ from floorplans import FloorPlan
 from rssnav.explorer.inputs import checked_values, number_input
 from rssnav.explorer.ranges import Range
 from rssnav.explorer.session import Session
-from rssnav.explorer.styles import WIDGETS
+from rssnav.explorer.styles import WIDGETS, details
 from rssnav.explorer.tracing import MapSettings
 from rssnav.explorer.uploads import ACCEPTED
 
@@ -54,11 +54,13 @@ class PlanPanel:
             label="Plan", options=self._names(), stylesheets=WIDGETS, sizing_mode="stretch_width"
         )
         self._upload = pn.Column(self._dropper(), sizing_mode="stretch_width", margin=0)
+        self._report = pn.pane.HTML("", stylesheets=WIDGETS, sizing_mode="stretch_width")
         self._make_settings()
         self._plan.param.watch(self._choose, "value")
         self.view = pn.Column(
             self._plan,
             self._upload,
+            self._report,
             pn.pane.HTML("<h2>Map</h2>", stylesheets=WIDGETS, margin=(0, 10)),
             pn.FlexBox(*self._inputs.values(), gap="0px 8px"),
             pn.pane.HTML(
@@ -76,6 +78,7 @@ class PlanPanel:
         plan = self._session.plan
         self._plan.options = self._names()
         self._plan.value = plan.name
+        self._report.object = details("Import report", self._session.import_report)
         for name, value in _values(plan, self._session.settings).items():
             self._inputs[name].value = value
         self._showing = False

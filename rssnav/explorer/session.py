@@ -22,7 +22,7 @@ from rssnav.explorer.tracing import (
     TracedMap,
 )
 from rssnav.explorer.training import LiveTraining, TrainingSettings
-from rssnav.explorer.uploads import read_upload
+from rssnav.explorer.uploads import Upload, read_upload
 
 PLACE_DIGITS = 2
 """A dragged source is rounded to centimetres."""
@@ -58,6 +58,8 @@ class Session:
     training : LiveTraining or None
     cell : (int, int) or None
         Indices (i_y, i_x) of the selected cell.
+    import_report : tuple of str
+        How the open plan was imported, a line each; empty if it was not.
     problem : str
         Why the latest change was rejected; empty if it was not.
     """
@@ -80,7 +82,8 @@ class Session:
         self.problem = ""
         self._reader = NewestOnly("upload", self._turns)
         self.files = FileMaker(self._turns)
-        self._uploaded: FloorPlan | str | None = None
+        self._uploaded: Upload | str | None = None
+        self.import_report: tuple[str, ...] = ()
         self.open_plan(plan)
 
     def close(self) -> None:
@@ -112,7 +115,7 @@ class Session:
         self._drop_training()
         self.maps.forget()
         self.paths.forget()
-        self.cell, self.problem = None, ""
+        self.cell, self.problem, self.import_report = None, "", ()
         self.plan, self.settings = plan, settings
         self._snap_start()
         self.maps.request(self.plan, self.settings)
@@ -129,11 +132,15 @@ class Session:
     def take_upload(self) -> bool:
         """Open an upload that has been read; return whether there was one, rejected or not."""
         found, self._uploaded = self._uploaded, None
-        if isinstance(found, FloorPlan):
-            self._try(partial(self.open_plan, found))
+        if isinstance(found, Upload):
+            self._try(partial(self._open_upload, found))
         elif found is not None:
             self.problem = found
         return found is not None
+
+    def _open_upload(self, upload: Upload) -> None:
+        self.open_plan(upload.plan)
+        self.import_report = upload.report
 
     def _read(self, name: str, content: bytes, ticket: Ticket) -> None:
         try:

@@ -3,6 +3,7 @@
 Widgets live in shadow trees, which the page's style sheet does not reach; each gets `WIDGETS`.
 """
 
+from collections.abc import Sequence
 from html import escape
 from importlib import resources
 
@@ -34,6 +35,14 @@ def problem(text: str) -> str:
 def pairs(rows: list[tuple[str, str]]) -> str:
     """HTML of a list of names and values."""
     return "<dl>" + "".join(f"<dt>{escape(a)}</dt><dd>{escape(b)}</dd>" for a, b in rows) + "</dl>"
+
+
+def details(title: str, lines: Sequence[str]) -> str:
+    """HTML of lines that are shown when one clicks their title; nothing for no lines."""
+    if not lines:
+        return ""
+    items = "".join(f"<li>{escape(line)}</li>" for line in lines)
+    return f"<details><summary>{escape(title)}</summary><ul>{items}</ul></details>"
 
 
 def progress_bar(fraction: float | None, what: str) -> str:

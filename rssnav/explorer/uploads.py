@@ -10,20 +10,36 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 import floorplans
 from floorplans import FloorPlan, PlanError
 from rssnav.explorer.file_names import file_name, shown_name
-from rssnav.explorer.import_worker import ENTITY_MARKS, RESULT, TOML
+from rssnav.explorer.import_worker import ENTITY_MARKS, REPORT, RESULT, TOML
 from rssnav.explorer.limits import Limits
 
 ACCEPTED = (TOML, *ENTITY_MARKS)
 
 _REASON_LENGTH = 500
+_MOST_LINES = 200
 _POLL_S = 0.1
+
+
+class Upload(NamedTuple):
+    """What an uploaded file holds.
+
+    Attributes
+    ----------
+    plan : FloorPlan
+    report : tuple of str
+        How the file was imported, a line each; empty for a plan in TOML.
+    """
+
+    plan: FloorPlan
+    report: tuple[str, ...]
 
 
 def _never() -> None:
@@ -35,13 +51,13 @@ def read_upload(
     content: bytes,
     limits: Limits | None = None,
     check: Callable[[], None] = _never,
-) -> FloorPlan:
+) -> Upload:
     """Read the plan in an uploaded file.
 
     Parameters
     ----------
     name : str
-        File name from the browser; only its suffix matters.
+        File name from the browser; its suffix gives the format, the rest names a plan without name.
     content : bytes
     limits : Limits, optional
     check : callable, optional
@@ -70,7 +86,19 @@ def read_upload(
         reason = _run_worker(file, limits, check)
         if reason:
             raise PlanError(_in_users_words(reason, file, origin))
-        return floorplans.loads(file.with_name(RESULT).read_text("utf-8"), origin=origin)
+        plan = floorplans.loads(file.with_name(RESULT).read_text("utf-8"), origin=origin)
+        if plan.name == file.stem:
+            plan = replace(plan, name=PurePosixPath(origin).stem)
+        return Upload(plan, _report(file.with_name(REPORT)))
+
+
+def _report(file: Path) -> tuple[str, ...]:
+    """First lines that the worker wrote on an import; none for a plan in TOML."""
+    if not file.exists():
+        return ()
+    lines = tuple(json.loads(file.read_text("utf-8")))
+    more = len(lines) - _MOST_LINES
+    return lines if more <= 0 else (*lines[:_MOST_LINES], f"... and {more} more lines")
 
 
 def _run_worker(file: Path, limits: Limits, check: Callable[[], None]) -> str:

@@ -238,6 +238,11 @@ def test_second_tab_on_a_phone_is_on_its_own(tab, browser, address, tmp_path) ->
     phone.page.mouse.click(*phone.place(9.5, 6.5))
     phone.page.get_by_text("(9.5, 6.5, 2) m").wait_for()
     phone.page.screenshot(path=tmp_path / "phone.png", full_page=True)
+    phone.page.get_by_role("button", name="3D", exact=True).click()
+    key = phone.page.frame_locator("iframe[title='3D']").locator("#key")
+    key.get_by_text("plasterboard").wait_for(state="hidden")  # folded, to leave the view free
+    key.locator("summary").click()
+    key.get_by_text("plasterboard").wait_for(state="visible")
     phone.choose("Training")
     width = phone.page.evaluate("document.documentElement.scrollWidth")
     phone.page.screenshot(path=tmp_path / "phone-training.png", full_page=True)

@@ -20,6 +20,7 @@ from cli_plans import run
 import floorplans
 import rssnav
 from floorplans import FloorPlan, PlanError
+from floorplans.exporters.formats import export
 from floorplans.geojson_plan import dumps_geojson
 from raytrace import Paths, RadioMap, TraceConfig
 from rssnav.explorer.background import FileMaker, NewestOnly, SupersededError, TooManyError
@@ -260,7 +261,24 @@ def test_upload_that_is_refused(name, content, says) -> None:
 
 
 def test_a_file_of_another_program_is_read() -> None:
-    assert read_upload("flat.geojson", dumps_geojson(FLAT).encode()) == FLAT
+    assert read_upload("flat.geojson", dumps_geojson(FLAT).encode()).plan == FLAT
+
+
+@pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")
+def test_an_uploaded_drawing_keeps_its_name_and_shows_its_report(session, tmp_path) -> None:
+    page, panel = (made := Page(session)), made._plan_panel
+    assert panel._report.object == ""
+    (drawing,) = export(FLAT, tmp_path / "flat.dxf")
+    session.upload("My <flat>, büro.dxf", drawing.read_bytes())
+    wait_for(lambda: session._uploaded is not None)
+    page.refresh()
+    assert session.plan.name == "My <flat>, büro"
+    shown = panel._report.object
+    assert "layer WINDOW: 5 objects: 5 blocks of doors and windows" in shown
+    assert "assumed height_m = 3" in shown
+    session.open_builtin("flat")
+    page.refresh()
+    assert panel._report.object == ""
 
 
 def test_a_reader_gets_no_more_than_its_time_and_memory() -> None:
@@ -270,7 +288,7 @@ def test_a_reader_gets_no_more_than_its_time_and_memory() -> None:
     large = content.replace(
         b"{", b'{"comment": "' + bytes(5_000_000).replace(b"\0", b"-") + b'", ', 1
     )
-    assert read_upload("flat.geojson", large) == FLAT
+    assert read_upload("flat.geojson", large).plan == FLAT
     with pytest.raises(PlanError):
         read_upload("flat.geojson", large, Limits(import_bytes=30_000_000))
 
