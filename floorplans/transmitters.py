@@ -12,8 +12,11 @@ POWER = Range(-200.0, 200.0, "dBm")
 FREQUENCY = Range(1e6, 1e12, "Hz")
 MAX_TRANSMITTERS = 1000
 
-ANTENNAS = ("isotropic", "dipole")
+ANTENNAS = ("isotropic", "dipole", "monopole", "patch", "sector")
 """Antennas with a name; any other is the path of a CSV file with a pattern."""
+
+WITHOUT_DIRECTION = ("isotropic", "monopole")
+"""Antennas with a name that have no direction; a monopole stands upright."""
 
 ALL = "all"
 """Word for all transmitters, which is no id."""
@@ -36,7 +39,8 @@ class PlanTransmitter:
     antenna : str or None
         Of `ANTENNAS`, or the path of a CSV file with its pattern, relative to the plan's file.
     direction : (float, float, float) or None
-        Of any length: the axis of a dipole, or where the +x axis of a pattern points to.
+        Of any length: the axis of a dipole, or where the front of a patch or sector, or the +x axis
+        of a pattern, points to.
     """
 
     id: str
@@ -77,7 +81,7 @@ def _check_antenna(transmitter: PlanTransmitter, place: Place) -> None:
     name, direction = transmitter.antenna, transmitter.direction
     if name is not None and name not in ANTENNAS and not name.lower().endswith(".csv"):
         raise PlanError(
-            f"expected {' or '.join(ANTENNAS)}, or the path of a .csv file with a pattern",
+            f"expected {', '.join(ANTENNAS)} or the path of a .csv file with a pattern",
             (*place, "antenna"),
             name,
         )
@@ -87,9 +91,9 @@ def _check_antenna(transmitter: PlanTransmitter, place: Place) -> None:
         check_number(part, COORDINATE, (*place, "direction", axis))
     if not any(direction):
         raise PlanError("expected a direction, not all 0", (*place, "direction"), direction)
-    if name is None or name == "isotropic":
+    if name is None or name in WITHOUT_DIRECTION:
         raise PlanError(
-            "only a dipole and a pattern have a direction; give such an antenna",
+            "only a dipole, a patch, a sector and a pattern have a direction; give such an antenna",
             (*place, "direction"),
             direction,
         )

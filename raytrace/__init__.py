@@ -18,7 +18,9 @@ from raytrace.errors import (
 )
 from raytrace.evaluation import TracedPoints, evaluate_paths, trace_points
 from raytrace.grid import Grid
+from raytrace.radio.antenna_array import AntennaArray
 from raytrace.radio.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
+from raytrace.radio.directive import Monopole, Patch, Sector
 from raytrace.radio.materials import (
     ABSORBER,
     PERFECT_CONDUCTOR,
@@ -31,7 +33,9 @@ from raytrace.radio.materials import (
     find_material,
 )
 from raytrace.radio.pattern_table import PatternTable
+from raytrace.radio.rotated import Rotated
 from raytrace.radio.transmitter import Transmitter
+from raytrace.results.channel_matrix import channel_matrix
 from raytrace.results.path_statistics import PathStatistics
 from raytrace.results.paths import ImpulseResponse, Paths
 from raytrace.results.radio_map import RadioMap
@@ -45,6 +49,7 @@ __all__ = [
     "DIPOLE_PEAK_GAIN_DBI",
     "PERFECT_CONDUCTOR",
     "Antenna",
+    "AntennaArray",
     "AntennaError",
     "CostEstimate",
     "Dielectric",
@@ -58,19 +63,24 @@ __all__ = [
     "Material",
     "MemoryLimitError",
     "MissingMapError",
+    "Monopole",
+    "Patch",
     "PathStatistics",
     "Paths",
     "PatternTable",
     "RadioMap",
+    "Rotated",
     "Scene",
     "SceneError",
     "SceneWarning",
+    "Sector",
     "Slab",
     "TraceConfig",
     "TraceStoppedError",
     "TracedPoints",
     "Transmitter",
     "TransmitterMaps",
+    "channel_matrix",
     "compute_radio_map",
     "compute_radio_maps",
     "dielectrics_of",

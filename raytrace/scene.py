@@ -8,6 +8,7 @@ import trimesh
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from raytrace.arrays import Floats
 from raytrace.errors import SceneError
 from raytrace.geometry.cells import CellComplex, cut_into_cells
 from raytrace.geometry.edges import (
@@ -58,6 +59,11 @@ class Scene:
     def view(self) -> PlanView:
         """The cells as the kernels see them."""
         return self.cells.view
+
+    @property
+    def walls(self) -> Floats:
+        """(n, 2, 2) ends of walls in the plan view [m], in pieces from corner to corner."""
+        return self.view.ends[self.view.profile >= 0].reshape(-1, 2, 2)
 
     @classmethod
     def from_mesh(

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rssnav.optimal_flights import Flight, Solution, greedy_path, shortest_path, value_iteration
     from rssnav.result_file import ResultFileError
     from rssnav.results import TrainingResult
+    from rssnav.scenes import PlanScene, scene_of
     from rssnav.schedule import Schedule
     from rssnav.training import TrainingInterrupted, train
     from rssnav.world import ACTION_NAMES, ACTIONS, GridWorld, WorldError
@@ -38,6 +39,7 @@ __all__ = [
     "GridWorld",
     "IntervalStates",
     "LocationAgent",
+    "PlanScene",
     "QLearning",
     "ResultFileError",
     "RssAgent",
@@ -48,6 +50,7 @@ __all__ = [
     "TrainingResult",
     "WorldError",
     "greedy_path",
+    "scene_of",
     "shortest_path",
     "train",
     "value_iteration",
@@ -61,6 +64,7 @@ _HOMES = {
     "learning_parameters": ("QLearning",),
     "optimal_flights": ("Flight", "Solution", "greedy_path", "shortest_path", "value_iteration"),
     "results": ("TrainingResult",),
+    "scenes": ("PlanScene", "scene_of"),
     "schedule": ("Schedule",),
     "result_file": ("ResultFileError",),
     "training": ("TrainingInterrupted", "train"),

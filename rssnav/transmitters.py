@@ -9,7 +9,7 @@ from pathlib import Path
 from floorplans import FloorPlan, PlanTransmitter
 from floorplans.transmitters import ALL
 from raytrace import Antenna, HalfWaveDipole, Isotropic, PatternTable, Transmitter
-from raytrace.radio.rotated import Rotated
+from raytrace.antennas import Monopole, Patch, Rotated, Sector
 
 POWER_DBM = 25.0
 FREQUENCY_HZ = 2.4e9
@@ -17,6 +17,8 @@ SOURCE = "source"
 """Name of a plan's source among its transmitters."""
 
 Position = tuple[float, float, float]
+
+_NAMED = {"isotropic": Isotropic, "monopole": Monopole, "patch": Patch, "sector": Sector}
 
 
 class NoTransmitterError(ValueError):
@@ -70,9 +72,10 @@ def antenna_of(name: str, direction: Position | None = None, folder: Path = Path
     Parameters
     ----------
     name : str
-        "isotropic", "dipole", or the path of a CSV file with a pattern.
+        One of `floorplans.transmitters.ANTENNAS`, or the path of a CSV file with a pattern.
     direction : (float, float, float), optional
-        The axis of a dipole, vertical by default, or where the +x axis of a pattern points to.
+        The axis of a dipole, vertical by default, or where the front of a patch or sector, or the
+        +x axis of a pattern, points to; +x by default.
     folder : Path, optional
         What the path is relative to.
 
@@ -81,12 +84,10 @@ def antenna_of(name: str, direction: Position | None = None, folder: Path = Path
     AntennaError
         Where the file is wrong.
     """
-    if name == "isotropic":
-        return Isotropic()
     if name == "dipole":
         return HalfWaveDipole() if direction is None else HalfWaveDipole(axis=direction)
-    pattern = PatternTable.from_csv(folder / name)
-    return pattern if direction is None else Rotated.towards(pattern, direction)
+    antenna = _NAMED[name]() if name in _NAMED else PatternTable.from_csv(folder / name)
+    return antenna if direction is None else Rotated.towards(antenna, direction)
 
 
 def choose_transmitters(

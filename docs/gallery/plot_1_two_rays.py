@@ -13,8 +13,8 @@ import numpy as np
 
 import floorplans
 import raytrace
+from rssnav import scene_of
 from rssnav.pictures.style import COLUMN_IN, STYLE
-from rssnav.scenes import scene_of
 
 plt.rcParams.update(STYLE)
 

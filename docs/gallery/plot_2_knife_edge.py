@@ -14,8 +14,8 @@ from scipy.special import fresnel
 
 import floorplans
 import raytrace
+from rssnav import scene_of
 from rssnav.pictures.style import COLUMN_IN, STYLE
-from rssnav.scenes import scene_of
 
 plt.rcParams.update(STYLE)
 

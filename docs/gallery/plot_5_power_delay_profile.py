@@ -11,8 +11,8 @@ import numpy as np
 
 import floorplans
 import raytrace
+from rssnav import scene_of
 from rssnav.pictures.style import PAGE_IN, STYLE
-from rssnav.scenes import scene_of
 
 plt.rcParams.update(STYLE)
 

@@ -53,12 +53,12 @@ class Rotated:
         """Field amplitudes towards directions; see `raytrace.radio.antennas.Antenna.amplitudes`."""
         x_axis, z_axis = np.array(self.x_axis), np.array(self.z_axis)
         axes = np.array([x_axis, np.cross(z_axis, x_axis), z_axis])
-        tau, psi, towards = _frame(np.asarray(sine), np.asarray(azimuth))
+        tau, psi, towards = unit_vectors(np.asarray(sine), np.asarray(azimuth))
         own = towards @ axes.T
         own_sine = np.clip(own[..., 2], -1.0, 1.0)
         own_azimuth = np.arctan2(own[..., 1], own[..., 0])
         v, h = self.antenna.amplitudes(own_sine, own_azimuth)
-        own_tau, own_psi, _ = _frame(own_sine, own_azimuth)
+        own_tau, own_psi, _ = unit_vectors(own_sine, own_azimuth)
         own_tau, own_psi = own_tau @ axes, own_psi @ axes
 
         return Amplitudes(
@@ -72,7 +72,7 @@ class Rotated:
         return f"{self.antenna.describe()}, towards ({x:.4g}, {y:.4g}, {z:.4g})"
 
 
-def _frame(sine: Floats, azimuth: Floats) -> tuple[Floats, Floats, Floats]:
+def unit_vectors(sine: Floats, azimuth: Floats) -> tuple[Floats, Floats, Floats]:
     """Unit vectors tau, psi and s of directions (docs/theory.md, eq. 10); (..., 3) each."""
     cosine = np.sqrt(np.maximum(1.0 - sine**2, 0.0))
     cos_a, sin_a = np.cos(azimuth), np.sin(azimuth)
@@ -80,3 +80,9 @@ def _frame(sine: Floats, azimuth: Floats) -> tuple[Floats, Floats, Floats]:
     tau = np.stack([-sine * cos_a, -sine * sin_a, cosine + zero], axis=-1)
     psi = np.stack([-sin_a + zero, cos_a + zero, zero], axis=-1)
     return tau, psi, np.stack([cosine * cos_a, cosine * sin_a, sine + zero], axis=-1)
+
+
+def components(field: Floats, sine: Floats, azimuth: Floats) -> Amplitudes:
+    """Amplitudes of a transverse field (..., 3) towards directions (...)."""
+    tau, psi, _ = unit_vectors(sine, azimuth)
+    return Amplitudes((field * tau).sum(axis=-1), (field * psi).sum(axis=-1))

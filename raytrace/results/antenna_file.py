@@ -1,11 +1,13 @@
 """Antennas in map files: by name and parameters where they are known, otherwise as a table."""
 
+from dataclasses import fields
 from typing import Any
 
 import h5py
 import numpy as np
 
 from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
+from raytrace.radio.directive import Monopole, Patch, Sector
 from raytrace.radio.pattern_table import PatternTable
 from raytrace.results.checked_hdf5 import Checked, Hdf5ContentError
 from raytrace.results.hdf5 import write_array
@@ -13,7 +15,9 @@ from raytrace.results.hdf5 import write_array
 TRANSMIT, RECEIVE = "transmit_antenna", "receive_antenna"
 """Prefixes of an antenna's attributes, and names of the groups of their arrays."""
 
-_NAMED = (HalfWaveDipole, Isotropic, PatternTable)
+_OF_NUMBERS = {kind.__name__: kind for kind in (Isotropic, Monopole, Patch, Sector)}
+"""Antennas that are given by numbers alone, by name."""
+_NAMED = (HalfWaveDipole, PatternTable, *_OF_NUMBERS.values())
 _PATTERN_ARRAYS = {
     "theta_deg": ("deg", "angle from the zenith"),
     "phi_deg": ("deg", "angle from +x towards +y"),
@@ -30,13 +34,13 @@ def as_stored(antenna: Antenna) -> Antenna:
 def antenna_attributes(key: str, antenna: Antenna) -> dict[str, Any]:
     """Return kind and parameters of an antenna, without its arrays, as attributes."""
     stored = as_stored(antenna)
-    parameters = {k: v for k, v in vars(stored).items() if not isinstance(v, np.ndarray)}
+    parameters = {k: v for k, v in _fields(stored).items() if not isinstance(v, np.ndarray)}
     return {key: type(stored).__name__, **{f"{key}_{k}": v for k, v in parameters.items()}}
 
 
 def write_pattern(antenna: Antenna, file: h5py.Group, key: str) -> None:
     """Write the arrays of an antenna that has any."""
-    for name, value in vars(as_stored(antenna)).items():
+    for name, value in _fields(as_stored(antenna)).items():
         if isinstance(value, np.ndarray):
             units, long_name = _PATTERN_ARRAYS[name]
             write_array(file.require_group(key), name, value, units, long_name)
@@ -57,8 +61,8 @@ def read_antenna(file: Checked, key: str) -> Antenna:
             return HalfWaveDipole(gain_db)
         x, y, z = file.numbers(axis, 3)
         return HalfWaveDipole(gain_db, (x, y, z))
-    if kind == Isotropic.__name__:
-        return Isotropic(file.number(f"{key}_gain_db"))
+    if kind in _OF_NUMBERS:
+        return _read_numbers(_OF_NUMBERS[kind], file, key)
     if kind != PatternTable.__name__:
         raise Hdf5ContentError(f"attribute {key!r}: {kind!r} is not an antenna of a map file")
     pattern, sizes = file.within(key), (f"{key}.n_theta", f"{key}.n_phi")
@@ -69,6 +73,23 @@ def read_antenna(file: Checked, key: str) -> Antenna:
         pattern.array("e_phi", np.complex128, sizes),
         file.text(f"{key}_name"),
     )
+
+
+def _read_numbers(
+    kind: type[Isotropic | Monopole | Patch | Sector], file: Checked, key: str
+) -> Antenna:
+    """Read an antenna that is given by numbers alone."""
+    numbers = {field.name: file.number(f"{key}_{field.name}") for field in fields(kind)}
+    try:
+        return kind(**numbers)
+    except ValueError as error:
+        raise Hdf5ContentError(f"attribute {key!r}: {error}") from error
+
+
+def _fields(antenna: Antenna) -> dict[str, Any]:
+    """Return what defines an antenna of a known kind, by name."""
+    assert isinstance(antenna, _NAMED)
+    return {field.name: getattr(antenna, field.name) for field in fields(antenna)}
 
 
 def read_receive_antenna(file: Checked) -> Antenna:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from raytrace.arrays import Complexes, Floats, Int8s, Ints
 from raytrace.constants import SPEED_OF_LIGHT
@@ -21,6 +23,7 @@ from raytrace.kernels.steps import (
     joined,
     rows_of,
 )
+from raytrace.results.csv_file import write_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +31,7 @@ if TYPE_CHECKING:
 INTERACTION_NAMES = {NOTHING: "", REFLECTION: "R", DIFFRACTION: "D", TRANSMISSION: "T"}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Paths:
     """Paths from a transmitter to receivers, n of them, strongest first at each receiver.
 
@@ -64,6 +67,11 @@ class Paths:
     def __len__(self) -> int:
         """Number of paths."""
         return len(self.receiver)
+
+    def __repr__(self) -> str:
+        """Numbers of paths and receivers in one line."""
+        n, most = len(np.unique(self.receiver)), self.interactions.shape[1]
+        return f"<Paths: {len(self)} to {n} receivers, at most {most} interactions>"
 
     @property
     def delay_s(self) -> Floats:
@@ -101,14 +109,49 @@ class Paths:
     @property
     def departure(self) -> Floats:
         """(n, 2) direction at the transmitter: azimuth from +x, zenith angle [rad]."""
-        return _angles(self.vertices[:, 1] - self.vertices[:, 0])
+        return _angles(self.departure_direction)
 
     @property
     def arrival(self) -> Floats:
         """(n, 2) direction from the receiver to the incoming path: azimuth, zenith angle [rad]."""
+        return _angles(self.arrival_direction)
+
+    @property
+    def departure_direction(self) -> Floats:
+        """(n, 3) unit vector in which the path leaves the transmitter."""
+        return _unit(self.vertices[:, 1] - self.vertices[:, 0])
+
+    @property
+    def arrival_direction(self) -> Floats:
+        """(n, 3) unit vector from the receiver to where the path comes from."""
         rows = np.arange(len(self))
         last = self.n_interactions
-        return _angles(self.vertices[rows, last] - self.vertices[rows, last + 1])
+        return _unit(self.vertices[rows, last] - self.vertices[rows, last + 1])
+
+    def doppler_hz(
+        self,
+        frequency_hz: float,
+        receiver_velocity: ArrayLike = (0.0, 0.0, 0.0),
+        transmitter_velocity: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> Floats:
+        """Doppler shifts (n,) [Hz] of moving ends in a building at rest.
+
+        Each end shifts a path by its speed along the path at that end over the wavelength; positive
+        where the path becomes shorter (Rappaport, *Wireless Communications*, section
+        5.2.1).
+
+        Parameters
+        ----------
+        frequency_hz
+            Carrier frequency [Hz].
+        receiver_velocity
+            (3,) or one for each path (n, 3) [m/s].
+        transmitter_velocity
+            The same of the transmitter.
+        """
+        towards_m_s = (self.arrival_direction * np.asarray(receiver_velocity)).sum(axis=-1)
+        towards_m_s += (self.departure_direction * np.asarray(transmitter_velocity)).sum(axis=-1)
+        return towards_m_s * (frequency_hz / SPEED_OF_LIGHT)
 
     def sequence(self, path: int) -> str:
         """Interactions of one path as letters, such as "RRD"; "LOS" for none."""
@@ -120,6 +163,22 @@ class Paths:
         Returns
         -------
         pandas.DataFrame
+            The columns of `columns`.
+        """
+        with needs_extra("data"):
+            import pandas as pd
+        return pd.DataFrame(self.columns())
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the table of `columns`, whole or not at all: a row per path."""
+        write_csv(Path(path), self.columns())
+
+    def columns(self) -> dict[str, NDArray[Any] | list[str]]:
+        """Return a table, one row per path.
+
+        Returns
+        -------
+        dict
             Columns ``receiver``, ``sequence`` (as `sequence` writes it), ``n_reflections``,
             ``n_diffractions``, ``n_transmissions``, ``length_m``, ``delay_s``, ``weight``,
             ``gain_real``, ``gain_imag``, ``gain_db``, ``surfaces`` and ``incidence_deg`` (slabs and
@@ -127,29 +186,25 @@ class Paths:
             by blanks, "-" for a diffraction), and the azimuth and zenith angles [rad]
             ``departure_azimuth``, ``departure_zenith``, ``arrival_azimuth``, ``arrival_zenith``.
         """
-        with needs_extra("data"):
-            import pandas as pd
         departure, arrival = self.departure, self.arrival
-        return pd.DataFrame(
-            {
-                "receiver": self.receiver,
-                "sequence": [self.sequence(k) for k in range(len(self))],
-                "n_reflections": np.count_nonzero(self.interactions == REFLECTION, axis=1),
-                "n_diffractions": np.count_nonzero(self.interactions == DIFFRACTION, axis=1),
-                "n_transmissions": np.count_nonzero(self.interactions == TRANSMISSION, axis=1),
-                "length_m": self.length_m,
-                "delay_s": self.delay_s,
-                "weight": self.weight,
-                "gain_real": self.gain.real,
-                "gain_imag": self.gain.imag,
-                "gain_db": self.gain_db,
-                **self._columns_of_steps(),
-                "departure_azimuth": departure[:, 0],
-                "departure_zenith": departure[:, 1],
-                "arrival_azimuth": arrival[:, 0],
-                "arrival_zenith": arrival[:, 1],
-            }
-        )
+        return {
+            "receiver": self.receiver,
+            "sequence": [self.sequence(k) for k in range(len(self))],
+            "n_reflections": np.count_nonzero(self.interactions == REFLECTION, axis=1),
+            "n_diffractions": np.count_nonzero(self.interactions == DIFFRACTION, axis=1),
+            "n_transmissions": np.count_nonzero(self.interactions == TRANSMISSION, axis=1),
+            "length_m": self.length_m,
+            "delay_s": self.delay_s,
+            "weight": self.weight,
+            "gain_real": self.gain.real,
+            "gain_imag": self.gain.imag,
+            "gain_db": self.gain_db,
+            **self._columns_of_steps(),
+            "departure_azimuth": departure[:, 0],
+            "departure_zenith": departure[:, 1],
+            "arrival_azimuth": arrival[:, 0],
+            "arrival_zenith": arrival[:, 1],
+        }
 
     def _columns_of_steps(self) -> dict[str, list[str]]:
         """Return the columns of the table that need steps; none without."""
@@ -287,6 +342,12 @@ class ImpulseResponse:
 
     taps: Complexes
     delay_s: Floats
+
+
+def _unit(vectors: Floats) -> Floats:
+    """Vectors (n, 3) of length 1; 0 stays 0."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.where(lengths > 0.0, lengths, 1.0)
 
 
 def _angles(direction: Floats) -> Floats:

@@ -15,14 +15,17 @@ from raytrace.extras import needs_extra
 from raytrace.grid import Grid
 from raytrace.radio.antennas import Antenna, HalfWaveDipole
 from raytrace.radio.transmitter import Transmitter
+from raytrace.results.csv_file import write_csv
 from raytrace.results.layers import EMPTY, LAYERS
 from raytrace.results.map_file import attributes_of, read_map_file, write_map_file
+from raytrace.results.map_plot import plot_layer
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RadioMap:
     """Received signal strength over a grid, and further layers.
 
@@ -82,6 +85,17 @@ class RadioMap:
         found = {name: getattr(self, name) for name in LAYERS}
         return {name: layer for name, layer in found.items() if layer is not None}
 
+    def __repr__(self) -> str:
+        """Size, range and transmitter in one line."""
+        covered = self.rss_dbm[self.path_count > 0]
+        levels = f"{covered.min():.1f} to {covered.max():.1f} dBm" if covered.size else "no path"
+        n_y, n_x = self.grid.shape
+        place = ", ".join(f"{c:g}" for c in self.transmitter.position)
+        return (
+            f"<RadioMap {n_x} x {n_y} cells of {self.grid.cell_size_m:g} m, {levels}, from "
+            f"({place}) at {self.transmitter.frequency_hz / 1e9:g} GHz>"
+        )
+
     def with_plan(self, text: str, sha256: str) -> RadioMap:
         """Return the same map with its plan stored in it."""
         return replace(self, plan_text=text, plan_sha256=sha256)
@@ -120,6 +134,50 @@ class RadioMap:
             for name, layer in self.layers.items()
         }
         return xr.Dataset(layers, coords, attributes_of(self))
+
+    def plot(
+        self, layer: str = "rss_dbm", *, ax: Axes | None = None, walls: Floats | None = None
+    ) -> Axes:
+        """Draw a layer in colour, with a star at the transmitter.
+
+        `rssnav.pictures.draw_radio_map` draws a map with everything in its plan.
+
+        Parameters
+        ----------
+        layer
+            One of `layers`.
+        ax
+            Where to draw; a new figure by default.
+        walls
+            (n, 2, 2) ends of lines to draw [m], such as `Scene.walls`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ValueError
+            For a layer that the map does not have.
+        """
+        if layer not in self.layers:
+            raise ValueError(f"layer = {layer!r}: expected one of {', '.join(self.layers)}")
+        values = np.where(self.path_count > 0, self.layers[layer], np.nan)
+        label = f"{layer} [{LAYERS[layer].units}]"
+        axes = plot_layer(self.grid, values, label, ax=ax, walls=walls)
+        x, y, _ = self.transmitter.position
+        axes.plot(x, y, "*", color="white", markeredgecolor="black", markersize=14.0)
+        return axes
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write a table, whole or not at all: a row per cell, x running fastest.
+
+        Columns are ``x``, ``y``, ``z`` of the cell's centre [m] and the layers by name; numbers are
+        written in full, ``-inf`` where no path arrives.
+        """
+        x, y = np.meshgrid(self.grid.x, self.grid.y)
+        columns = {"x": x, "y": y, "z": np.full_like(x, self.grid.height_m), **self.layers}
+        write_csv(Path(path), {name: values.ravel() for name, values in columns.items()})
 
     def save(self, path: str | Path) -> None:
         """Write to HDF5, whole or not at all (see `raytrace.results.map_file`)."""

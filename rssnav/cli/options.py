@@ -178,7 +178,8 @@ AntennaName = Annotated[
         "--antenna",
         metavar="NAME",
         callback=_check_antenna,
-        help="Of the transmitter: isotropic, dipole (vertical), or a pattern.csv.",
+        help="Of the transmitter: isotropic, dipole (vertical), monopole, patch, sector, or a "
+        "pattern.csv.",
         show_default="the transmitter's in the plan, otherwise the preset's",
     ),
 ]
@@ -188,7 +189,8 @@ ReceiveAntennaName = Annotated[
         "--receive-antenna",
         metavar="NAME",
         callback=_check_antenna,
-        help="Of the receivers: isotropic, dipole (vertical), or a pattern.csv.",
+        help="Of the receivers: isotropic, dipole (vertical), monopole, patch, sector, or a "
+        "pattern.csv.",
         show_default=_OF_PRESET,
     ),
 ]

@@ -20,6 +20,7 @@ from raytrace import (
     TraceConfig,
     Transmitter,
 )
+from raytrace.antennas import Monopole, Patch, Sector
 from raytrace.arrays import Floats
 from raytrace.radio.antennas import Amplitudes
 from raytrace.results.antenna_file import as_stored
@@ -56,6 +57,9 @@ ANTENNAS = [
     HalfWaveDipole(),
     HalfWaveDipole(2.15, (0.0, 1.0, 1.0)),
     Isotropic(-3.0),
+    Monopole(4.5),
+    Patch(3.3),
+    Sector(7.0, 60.0, 25.0, -45.0),
     PatternTable.of_gain(THETA, PHI, np.add.outer(-THETA / 30.0, np.cos(np.radians(PHI)))),
 ]
 
