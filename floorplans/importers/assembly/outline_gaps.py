@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -14,7 +16,7 @@ from floorplans.walls import TOLERANCE_M
 _NEAREST_ENDS = 4
 _NEAREST_WALLS = 8
 _SPREAD = np.cos(np.pi / 4)
-_CHUNK = 500
+_FIRST_RADIUS_M = 0.25
 
 Segments = NDArray[np.float64]
 Lines = NDArray[np.object_]
@@ -92,15 +94,28 @@ def _to_walls(
 ) -> Segments:
     """Link from each free end to the nearest other wall."""
     links = [np.empty((0, 2, 2))]
-    for begin in range(0, len(ends), _CHUNK):
-        points = _points(ends[begin : begin + _CHUNK])
-        which, wall = tree.query(points, "dwithin", distance=max_gap_m)
-        other = wall != owner[begin + which]
+    todo = np.arange(len(ends))
+    done = [todo[:0]]
+    for radius_m in _radii(max_gap_m):
+        points = _points(ends[todo])
+        which, wall = tree.query(points, "dwithin", distance=radius_m)
+        other = wall != owner[todo[which]]
         which, wall = which[other], wall[other]
         best = _first_of_each(which, shapely.distance(points[which], lines[wall]))
         shortest = shapely.shortest_line(points[which[best]], lines[wall[best]])
         links.append(shapely.get_coordinates(shortest).reshape(-1, 2, 2))
-    return np.concatenate(links)
+        done.append(todo[which[best]])
+        todo = np.delete(todo, which[best])
+    return np.concatenate(links)[np.argsort(np.concatenate(done))]
+
+
+def _radii(most_m: float) -> Iterator[float]:
+    """Doubling distances up to the largest [m]: what is near is found before much is compared."""
+    radius_m = min(_FIRST_RADIUS_M, most_m)
+    while radius_m < most_m:
+        yield radius_m
+        radius_m *= 2
+    yield most_m
 
 
 def _straight_ahead(
@@ -128,18 +143,50 @@ def _between_groups(lines: Lines, tree: shapely.STRtree, max_gap_m: float) -> Se
     """Links from each group of connected walls to a few of the nearest other walls."""
     touching = tree.query(lines, "dwithin", distance=2 * TOLERANCE_M)
     graph = coo_array((np.ones(touching.shape[1]), tuple(touching)), shape=(len(lines),) * 2)
-    _, labels = connected_components(graph, directed=False)
-    a, b = tree.query(lines, "dwithin", distance=max_gap_m)
-    apart = labels[a] != labels[b]
-    a, b = a[apart], b[apart]
-    distance_m = shapely.distance(lines[a], lines[b])
-    best = _first_of_each(labels[a] * len(lines) + b, distance_m)
-    group, rank_by = labels[a[best]], distance_m[best]
-    order = np.lexsort((rank_by, group))
-    rank = np.arange(len(order)) - np.searchsorted(group[order], group[order])
-    few = best[order[rank < _NEAREST_WALLS]]
-    links = shapely.get_coordinates(shapely.shortest_line(lines[a[few]], lines[b[few]]))
-    return _spread(labels[a[few]], links.reshape(-1, 2, 2))
+    n_groups, labels = connected_components(graph, directed=False)
+    todo = np.ones(n_groups, dtype=np.bool_)
+    found: list[NDArray[np.int64]] = []
+    for radius_m in _radii(max_gap_m):
+        a, b = _pairs_of_groups(lines, tree, labels, todo, radius_m)
+        distance_m = shapely.distance(lines[a], lines[b])
+        best = _first_of_each(labels[a] * len(lines) + b, distance_m)
+        best = best[np.lexsort((distance_m[best], labels[a[best]]))]
+        group = labels[a[best]]
+        rank = np.arange(len(best)) - np.searchsorted(group, group)
+        complete = np.bincount(group, minlength=n_groups) >= _NEAREST_WALLS
+        kept = best[(rank < _NEAREST_WALLS) & (complete[group] | (radius_m == max_gap_m))]
+        found.append(np.stack([a[kept], b[kept]]))
+        todo &= ~complete
+    a, b = np.concatenate(found, axis=1)
+    a, b = np.stack([a, b])[:, np.argsort(labels[a], kind="stable")]
+    links = shapely.get_coordinates(shapely.shortest_line(lines[a], lines[b]))
+    return _spread(labels[a], links.reshape(-1, 2, 2))
+
+
+def _pairs_of_groups(
+    lines: Lines,
+    tree: shapely.STRtree,
+    labels: NDArray[np.int64],
+    todo: NDArray[np.bool_],
+    distance_m: float,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Walls of some groups, and walls of other groups within a distance, in the walls' order.
+
+    Every such pair has a wall outside the largest group, which may hold nearly all walls: those
+    outside it are looked up alone.
+    """
+    largest = int(np.argmax(np.bincount(labels)))
+    wanted = todo[labels] | todo[largest]
+    asked = np.flatnonzero(wanted & (labels != largest))
+    first, second = tree.query(lines[asked], "dwithin", distance=distance_m)
+    first = asked[first]
+    mirrored = labels[second] == largest
+    a = np.concatenate([first, second[mirrored]])
+    b = np.concatenate([second, first[mirrored]])
+    used = (labels[a] != labels[b]) & todo[labels[a]]
+    a, b = a[used], b[used]
+    order = np.lexsort((b, a))
+    return a[order], b[order]
 
 
 def _spread(group: NDArray[np.int64], links: Segments) -> Segments:
