@@ -55,6 +55,33 @@ class Storey:
     enclosed: float = 1.0
 
 
+class _Network:
+    """Lines in pieces that meet only at their ends, which are found once for any links.
+
+    Attributes
+    ----------
+    lines : (n,) shapely lines
+    """
+
+    def __init__(self, lines: Lines) -> None:
+        self.lines = lines
+        self._pieces = _noded(lines)
+        self._tree = shapely.STRtree(self._pieces)
+
+    def faces(self, links: NDArray[np.float64]) -> Lines:
+        """Smallest regions that the lines and links enclose."""
+        closing = np.array(shapely.linestrings(links), dtype=np.object_)
+        touched = np.unique(self._tree.query(closing, "intersects")[1])
+        met = _noded(np.concatenate([self._pieces[touched], closing]))
+        pieces = np.concatenate([np.delete(self._pieces, touched), met])
+        return np.array(shapely.get_parts(shapely.polygonize(pieces)), dtype=np.object_)
+
+
+def _noded(lines: Lines) -> Lines:
+    """Lines split where they meet."""
+    return np.array(shapely.get_parts(shapely.union_all(lines)), dtype=np.object_)
+
+
 @dataclass(frozen=True)
 class _Region:
     """What walls and links enclose; the sides that only links close; how much of the walls."""
@@ -112,7 +139,8 @@ def outline_of(walls: Sequence[Wall], given: Polygon | None) -> Polygon | None:
     given : shapely.geometry.Polygon or None
         As in `find_outline`.
     """
-    region = _largest_face(centre_lines(split_at_junctions(walls)), np.empty((0, 2, 2)), given)
+    network = _Network(centre_lines(split_at_junctions(walls)))
+    region = _largest_face(network, np.empty((0, 2, 2)), given)
     return None if region is None else _simplified(region)
 
 
@@ -131,19 +159,23 @@ def _enclosed_region(
     Under a strict limit a building is open where the default limit would enclose more of it;
     otherwise only where hardly any of the walls are enclosed, in whatever number of buildings.
     """
-    closed = _region(lines, lines, np.empty((0, 2, 2)), given)
+    network = _Network(lines)
+    closed = _region(lines, network, np.empty((0, 2, 2)), given)
     if closed and closed.enclosed > 1 - _ENOUGH:
         return closed
-    outer = lines if closed is None or given is not None else _not_within(lines, closed.polygon)
-    links = gap_links(outer, max(limit_m, CLOSED_GAP_M))
+    if closed is None or given is not None:
+        outer = network
+    else:
+        outer = _Network(_not_within(lines, closed.polygon))
+    links = gap_links(outer.lines, max(limit_m, CLOSED_GAP_M))
     found = _best_region(lines, outer, links, given, limit_m)
     if is_strict and limit_m < CLOSED_GAP_M:
         wider = _best_region(lines, outer, links, given, CLOSED_GAP_M)
         if wider and (found is None or wider.enclosed > found.enclosed + _ENOUGH):
             return wider
-    if found and (found.enclosed > _MOSTLY_OPEN or _is_closed(lines, links, found)):
+    if found and (found.enclosed > _MOSTLY_OPEN or _is_closed(network, links, found)):
         return found
-    links = gap_links(outer, max(_GAPS_M))
+    links = gap_links(outer.lines, max(_GAPS_M))
     wider = _best_region(lines, outer, links, given, max(_GAPS_M))
     if found and not (wider and wider.enclosed > _MOSTLY_OPEN):
         return found
@@ -157,7 +189,11 @@ def _not_within(lines: Lines, region: Polygon) -> Lines:
 
 
 def _best_region(
-    lines: Lines, outer: Lines, links: NDArray[np.float64], given: Polygon | None, limit_m: float
+    lines: Lines,
+    outer: _Network,
+    links: NDArray[np.float64],
+    given: Polygon | None,
+    limit_m: float,
 ) -> _Region | None:
     """Region with most of the walls for the least width of gaps; None if there is none."""
     lengths_m = link_lengths(links)
@@ -172,28 +208,29 @@ def _best_region(
 
 
 def _region(
-    lines: Lines, outer: Lines, links: NDArray[np.float64], given: Polygon | None
+    lines: Lines, outer: _Network, links: NDArray[np.float64], given: Polygon | None
 ) -> _Region | None:
     """Region that the outer lines and links enclose, and how much of all lines it holds."""
     polygon = _largest_face(outer, links, given)
     if polygon is None:
         return None
     enclosed = _length_inside(lines, polygon) / float(shapely.length(lines).sum())
-    return _Region(_simplified(polygon), tuple(_open_sections(polygon, outer)), enclosed)
+    return _Region(_simplified(polygon), tuple(_open_sections(polygon, outer.lines)), enclosed)
 
 
 def _simplified(polygon: Polygon) -> Polygon:
-    simple = polygon.simplify(TOLERANCE_M / 10)
+    """Outline without corners on straight sides; it begins at its leftmost corner."""
+    simple = shapely.normalize(polygon).simplify(TOLERANCE_M / 10)
     assert isinstance(simple, Polygon)
     return simple
 
 
-def _is_closed(lines: Lines, links: NDArray[np.float64], region: _Region) -> bool:
+def _is_closed(network: _Network, links: NDArray[np.float64], region: _Region) -> bool:
     """Whether most of the walls outside a region are part of other closed buildings."""
+    lines = network.lines
     widths_m = [dist(*gap) for gap in region.gaps]
-    used = links[link_lengths(links) <= max(widths_m, default=0.0)]
-    faces = _faces(lines, used)
-    wide = shapely.union_all(faces).buffer(_ON_EDGE_M)
+    faces = network.faces(links[link_lengths(links) <= max(widths_m, default=0.0)])
+    wide = shapely.coverage_union_all(faces).buffer(_ON_EDGE_M)
     shapely.prepare(wide)
     lengths_m = shapely.length(lines)
     return float(lengths_m[shapely.covers(wide, lines)].sum()) > _MOSTLY_OPEN * lengths_m.sum()
@@ -234,27 +271,21 @@ def _open_sections(region: Polygon, lines: Lines) -> list[Link]:
     return [side for i, side in enumerate(sides) if i not in covered]
 
 
-def _faces(lines: Lines, links: NDArray[np.float64]) -> Lines:
-    """Smallest regions that lines and links enclose."""
-    closing = np.array(shapely.linestrings(links), dtype=np.object_)
-    noded = shapely.union_all(np.concatenate([lines, closing]))
-    return np.array(shapely.get_parts(shapely.polygonize(shapely.get_parts(noded))), dtype=object)
-
-
 def _largest_face(
-    lines: Lines, links: NDArray[np.float64], given: Polygon | None
+    network: _Network, links: NDArray[np.float64], given: Polygon | None
 ) -> Polygon | None:
     """Largest connected region that lines and links enclose; None if there is none."""
-    faces = _faces(lines, links)
+    faces = network.faces(links)
     if given is not None:
         covered = shapely.area(shapely.intersection(faces, given))
         faces = faces[covered > 0.5 * shapely.area(faces)]
-    parts = shapely.get_parts(shapely.union_all(faces))
+    parts = shapely.get_parts(shapely.coverage_union_all(faces))
     polygons = [part for part in parts if isinstance(part, Polygon)]
-    wide = [part for part in polygons if not part.buffer(-_NARROW_M / 2).is_empty]
-    if not wide:
+    by_size = sorted(polygons, key=lambda polygon: -polygon.area)
+    wide = (part for part in by_size if not part.buffer(-_NARROW_M / 2).is_empty)
+    largest = next(wide, None)
+    if largest is None:
         return None
-    largest = max(wide, key=lambda polygon: polygon.area)
     holes = list(largest.interiors) if given is not None else []
     return Polygon(largest.exterior, holes)
 
