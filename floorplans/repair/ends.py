@@ -59,43 +59,87 @@ def snap_ends(walls: Sequence[Wall], reach_m: float, changes: list[Change]) -> t
 def _moved_to_walls(
     walls: Sequence[Wall], ends: NDArray[np.float64], reach_m: float
 ) -> NDArray[np.float64]:
-    """Ends (n, 2, 2), each moved along its wall to the centre line of the wall it stands in."""
-    lines = centre_lines(walls)
-    points = _points(ends.reshape(-1, 2))
-    far_m = 1.5 * (reach_m + max(wall.thickness_m for wall in walls) / 2)
-    which, near = shapely.STRtree(lines).query(points, predicate="dwithin", distance=far_m)
-    gaps = shapely.distance(points[which], lines[near])
-    candidates: list[list[tuple[int, float]]] = [[] for _ in points]
-    for i, j, gap in zip(which.tolist(), near.tolist(), gaps.tolist(), strict=True):
-        if j != i // 2:
-            candidates[i].append((j, gap))
+    """Ends (n, 2, 2), each moved along its wall to the centre line of the wall it stands in.
+
+    An end that already meets another end moves no farther than the reach.
+    """
+    points = ends.reshape(-1, 2)
+    thickness_m = np.array([wall.thickness_m for wall in walls])
+    near = _near_walls(walls, points, 1.5 * (reach_m + thickness_m.max() / 2))
+    touched = near.gap_m <= TOLERANCE_M
+    is_settled = _any_of_each(near.end, touched & near.is_inner, len(points))
+    in_corner = _any_of_each(near.end, touched, len(points))
+    in_body = (near.across_m <= reach_m + thickness_m[near.wall] / 2) & (
+        near.beside_m <= reach_m + thickness_m[near.end // 2] / 2
+    )
+    meets = np.where(in_corner[near.end], near.gap_m <= reach_m, in_body)
+    used = meets & ~touched & ~is_settled[near.end]
+    others: dict[int, list[int]] = {}
+    for i, j in zip(near.end[used].tolist(), near.wall[used].tolist(), strict=True):
+        others.setdefault(i, []).append(j)
     moved = ends.copy()
-    for i, others in enumerate(candidates):
+    for i, met in others.items():
         end = _End(i // 2, i % 2)
-        touched = [j for j, gap_m in others if gap_m <= TOLERANCE_M]
-        if any(_inner(walls[j], ends[end.wall, end.side]) for j in touched):
-            continue
-        apart = [(j, gap_m) for j, gap_m in others if gap_m > TOLERANCE_M]
-        moved[end.wall, end.side] = _meeting_point(walls, end, apart, reach_m, bool(touched))
+        moved[end.wall, end.side] = _meeting_point(walls, end, met, reach_m)
     return moved
+
+
+@dataclass(frozen=True)
+class _NearWalls:
+    """Pairs of an end, counted over all walls, and another wall near it, each (n,).
+
+    Attributes
+    ----------
+    end, wall : int64
+    gap_m, across_m : float64
+        Distance from the wall's centre line, and from the infinite line [m].
+    beside_m : float64
+        How far beyond the ends of the wall the end lies; 0 between them [m].
+    is_inner : bool
+        Whether it lies between them, not at one.
+    """
+
+    end: NDArray[np.int64]
+    wall: NDArray[np.int64]
+    gap_m: NDArray[np.float64]
+    across_m: NDArray[np.float64]
+    beside_m: NDArray[np.float64]
+    is_inner: NDArray[np.bool_]
+
+
+def _near_walls(
+    walls: Sequence[Wall], points: NDArray[np.float64], distance_m: float
+) -> _NearWalls:
+    """Other walls within a distance of the ends, which lie at points (2 n, 2)."""
+    lines, ends = centre_lines(walls), _points(points)
+    end, near = shapely.STRtree(lines).query(ends, predicate="dwithin", distance=distance_m)
+    end, near = (x[near != end // 2] for x in (end, near))
+    start, stop = np.array([(wall.start, wall.end) for wall in walls]).transpose(1, 0, 2)
+    step = (stop - start)[near]
+    length_m = np.hypot(step[:, 0], step[:, 1])
+    u_x, u_y = (step / np.where(length_m > 0, length_m, 1.0)[:, None]).T
+    x, y = (points[end] - start[near]).T
+    along_m = x * u_x + y * u_y
+    return _NearWalls(
+        end,
+        near,
+        gap_m=np.array(shapely.distance(ends[end], lines[near])),
+        across_m=np.abs(u_x * y - u_y * x),
+        beside_m=np.maximum(np.maximum(-along_m, along_m - length_m), 0.0),
+        is_inner=(along_m > TOLERANCE_M) & (along_m < length_m - TOLERANCE_M),
+    )
+
+
+def _any_of_each(which: NDArray[np.int64], flags: NDArray[np.bool_], n: int) -> NDArray[np.bool_]:
+    """Whether any flag of each number below n is set, (n,)."""
+    return np.bincount(which[flags], minlength=n) > 0
 
 
 def _on_walls(walls: Sequence[Wall], ends: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which ends (n, 2, 2) lie on another wall between its ends, (2 n,)."""
-    points = _points(ends.reshape(-1, 2))
-    which, near = shapely.STRtree(centre_lines(walls)).query(
-        points, predicate="dwithin", distance=TOLERANCE_M
-    )
-    on = np.zeros(points.size, dtype=np.bool_)
-    for i, j in zip(which.tolist(), near.tolist(), strict=True):
-        on[i] |= j != i // 2 and _inner(walls[j], ends[i // 2, i % 2])
-    return on
-
-
-def _inner(wall: Wall, point: NDArray[np.float64]) -> bool:
-    """Whether a point of a wall lies between its ends."""
-    s, _ = along_across(wall, (float(point[0]), float(point[1])))
-    return TOLERANCE_M < s < wall.length_m - TOLERANCE_M
+    points = ends.reshape(-1, 2)
+    near = _near_walls(walls, points, TOLERANCE_M)
+    return _any_of_each(near.end, near.is_inner, len(points))
 
 
 def _points(ends: NDArray[np.float64]) -> NDArray[np.object_]:
@@ -103,24 +147,13 @@ def _points(ends: NDArray[np.float64]) -> NDArray[np.object_]:
 
 
 def _meeting_point(
-    walls: Sequence[Wall],
-    end: _End,
-    others: Iterable[tuple[int, float]],
-    reach_m: float,
-    in_corner: bool,
+    walls: Sequence[Wall], end: _End, others: Iterable[int], reach_m: float
 ) -> Point:
-    """Where an end should be: the nearest crossing of its line with that of a nearby wall.
-
-    An end that already meets another end moves no farther than the reach.
-    """
+    """Where an end should be: the nearest crossing of its line with that of a wall it meets."""
     wall = walls[end.wall]
     here = wall.end if end.side else wall.start
     best, best_m = here, np.inf
-    for j, gap_m in others:
-        other = walls[j]
-        meets = gap_m <= reach_m if in_corner else _in_body(wall, here, other, reach_m)
-        if not meets:
-            continue
+    for other in (walls[j] for j in others):
         crossing = line_crossing(wall, other, _MIN_SINE)
         if crossing is None:
             continue
@@ -132,13 +165,6 @@ def _meeting_point(
         ):
             best, best_m = tidy_point(*crossing), move_m
     return best
-
-
-def _in_body(wall: Wall, end: Point, other: Wall, reach_m: float) -> bool:
-    """Whether an end lies in another wall's body, or in the corner the two would form."""
-    _, across = along_across(other, end)
-    in_depth = abs(across) <= reach_m + other.thickness_m / 2
-    return in_depth and _beside(other, end) <= reach_m + wall.thickness_m / 2
 
 
 def _beside(wall: Wall, point: Point) -> float:
