@@ -6,13 +6,18 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import hypot
 
+import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from floorplans.walls import TOLERANCE_M, Opening, Point, Wall, centre_lines
 
 DECIMALS = 10
 """Coordinates are rounded to 1e-10 m: a wall that ends on an oblique one then also ends on it for a
 tracer, which distinguishes points more than 1e-8 m apart."""
+
+MIN_SINE = 1e-3
+"""Sine of the smallest angle at which two walls cross."""
 
 
 @dataclass(frozen=True)
@@ -104,25 +109,40 @@ def _moved_openings(part: Wall, bare: Wall) -> Iterable[Opening]:
 def points_on_walls(walls: Sequence[Wall]) -> list[list[float]]:
     """Where others end on or cross each wall, as distances along it [m]."""
     lines = centre_lines(walls)
-    cuts: list[list[float]] = [[] for _ in walls]
     first, second = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=TOLERANCE_M)
-    for i, j in zip(first.tolist(), second.tolist(), strict=True):
-        if i == j:
-            continue
-        for end in (walls[j].start, walls[j].end):
-            s, across = along_across(walls[i], end)
-            if abs(across) <= TOLERANCE_M and 0 < s < walls[i].length_m:
-                cuts[i].append(s)
-        crossing = line_crossing(walls[i], walls[j])
-        if crossing is not None:
-            s = along_across(walls[i], crossing)[0]
-            t = along_across(walls[j], crossing)[0]
-            if 0 < s < walls[i].length_m and 0 < t < walls[j].length_m:
-                cuts[i].append(s)
+    first, second = (x[first != second] for x in (first, second))
+    start, end = np.array([(w.start, w.end) for w in walls]).reshape(-1, 2, 2).transpose(1, 0, 2)
+    step = end - start
+    length = np.hypot(step[:, 0], step[:, 1])
+    unit = step / np.where(length > 0, length, 1.0)[:, None]
+    cuts: list[list[float]] = [[] for _ in walls]
+
+    def add(s: NDArray[np.float64], on: NDArray[np.bool_]) -> None:
+        for i, at in zip(first[on].tolist(), s[on].tolist(), strict=True):
+            cuts[i].append(at)
+
+    for point in (start[second], end[second]):
+        s, across = _along(unit[first], point - start[first])
+        add(s, (np.abs(across) <= TOLERANCE_M) & (s > 0) & (s < length[first]))
+    _, sine = _along(unit[first], unit[second])
+    apart = start[second] - start[first]
+    crossing = np.abs(sine) >= MIN_SINE
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s = _along(unit[second], apart)[1] / -sine
+        t = _along(unit[first], apart)[1] / -sine
+    add(s, crossing & (s > 0) & (s < length[first]) & (t > 0) & (t < length[second]))
     return cuts
 
 
-def line_crossing(a: Wall, b: Wall, min_sine: float = 1e-3) -> Point | None:
+def _along(
+    unit: NDArray[np.float64], vector: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Components of vectors (n, 2) along unit vectors, and to their left."""
+    (u_x, u_y), (x, y) = unit.T, vector.T
+    return x * u_x + y * u_y, u_x * y - u_y * x
+
+
+def line_crossing(a: Wall, b: Wall, min_sine: float = MIN_SINE) -> Point | None:
     """Where the lines of two walls cross; None if the sine of their angle is below a limit."""
     (ux, uy), (vx, vy) = direction(a), direction(b)
     sine = ux * vy - uy * vx

@@ -8,7 +8,6 @@ from typing import Any
 import shapely
 from shapely.geometry import LineString
 
-from floorplans.checks.plan import faults
 from floorplans.errors import PlanError, unknown_name
 from floorplans.importers.assembly.assumptions import assumptions
 from floorplans.importers.assembly.building import Building, buildings
@@ -31,7 +30,7 @@ from floorplans.importers.imported import Imported, ImportRecord
 from floorplans.importers.progress import N_STEPS, Progress, no_progress
 from floorplans.materials import MATERIALS, PlanMaterial
 from floorplans.plan import FloorPlan
-from floorplans.repair.geometry import tidy_point
+from floorplans.repair.geometry import Change, tidy_point
 from floorplans.repair.plan import repair_plan
 from floorplans.unchecked import UncheckedPlan
 from floorplans.values import LENGTH, MAX_SIDE_M, MAX_WALLS, check_number
@@ -92,16 +91,19 @@ def assemble(
 
 def _checked(record: ImportRecord) -> Imported | None:
     """Return what was imported as a plan that passes its checks, after safe repairs if it must."""
-    fault = next(faults(record.plan), None)
-    if fault is not None and fault.place and fault.place[0] in _GIVEN_BY_USER:
-        raise fault
-    changes = record.changes
-    plan = record.plan
-    if fault is not None:
-        repaired = repair_plan(plan)
-        plan, changes = repaired.plan, (*changes, *repaired.changes)
-        if not repaired.changes or next(faults(plan), None) is not None:
-            return None
+    try:
+        return _imported(record, record.plan, record.changes)
+    except PlanError as fault:
+        if fault.place and fault.place[0] in _GIVEN_BY_USER:
+            raise
+    repaired = repair_plan(record.plan)
+    try:
+        return _imported(record, repaired.plan, (*record.changes, *repaired.changes))
+    except PlanError:
+        return None
+
+
+def _imported(record: ImportRecord, plan: UncheckedPlan, changes: tuple[Change, ...]) -> Imported:
     fields: dict[str, Any] = {**vars(record), "plan": FloorPlan.of(plan), "changes": changes}
     return Imported(**fields)
 

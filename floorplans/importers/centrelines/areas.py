@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import LineString, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.importers.centrelines.axes import Axis, on_common_lines
@@ -33,6 +33,7 @@ SQUATNESS = 0.5
 _PARALLEL = np.cos(np.radians(12.0))
 _FACING_FRACTION = 0.6  # of the thickness, on which the two sides of a wall must face each other
 _BEND = np.sin(np.radians(1.0))
+_TILES = 8.0  # times the reach: side of a tile of the solid
 _REACH = 2.0  # times the thickest wall: how far an end may be extended to meet another wall
 
 Vectors = NDArray[np.float64]
@@ -182,33 +183,61 @@ def _joined(walls: list[RawWall], rings: list[RawWall], whole: BaseGeometry) -> 
     """Extend each end through the solid to the nearest centre line it meets."""
     if not walls:
         return []
-    solid = whole.buffer(1e-6)
-    shapely.prepare(solid)
     reach_m = _REACH * max(wall.thickness_m or 0.0 for wall in walls)
-    long = [_extended(wall, solid, reach_m) for wall in walls]
+    solid = _Solid(whole.buffer(1e-6), reach_m)
+    long = [_extended(wall, solid) for wall in walls]
     others = [*long, *(LineString([ring.start, ring.end]) for ring in rings)]
     tree = shapely.STRtree(others)
     near = [[m for m in tree.query(line).tolist() if m != k] for k, line in enumerate(long)]
     cut = [_cut(walls[k], long[k], [others[m] for m in near[k]]) for k in range(len(walls))]
-    ends = shapely.points([end for wall in cut for end in (wall.start, wall.end)])
-    return [_reaching(wall, long[k], np.array(ends)) for k, wall in enumerate(cut)]
+    ends = np.array(shapely.points([end for wall in cut for end in (wall.start, wall.end)]))
+    touching = shapely.STRtree(ends).query(long, "dwithin", distance=1e-6)
+    on_line = np.split(touching[1], np.searchsorted(touching[0], np.arange(1, len(long))))
+    return [_reaching(wall, ends[np.sort(on_line[k])]) for k, wall in enumerate(cut)]
 
 
-def _extended(wall: RawWall, solid: BaseGeometry, reach_m: float) -> LineString:
+class _Solid:
+    """The solid near a place: a building's walls are one large area, of which a line meets little.
+
+    Attributes
+    ----------
+    reach_m : float
+        Length of the lines that are looked up [m].
+    """
+
+    def __init__(self, solid: BaseGeometry, reach_m: float) -> None:
+        shapely.prepare(solid)
+        self.reach_m = reach_m
+        self._solid = solid
+        self._side_m = max(_TILES * reach_m, MAX_THICKNESS_M)
+        self._tiles: dict[tuple[int, int], BaseGeometry] = {}
+
+    def last_point(self, start: Vectors, end: Vectors) -> Vectors:
+        """Point up to which the line from `start` to `end`, no longer than the reach, is solid."""
+        line = LineString([start, end])
+        if self._solid.covers(line):
+            return end
+        for part in shapely.get_parts(line.intersection(self._around(start))):
+            points = shapely.get_coordinates(part)
+            if len(points) and np.hypot(*(points - start).T).min() < 1e-5:
+                return points[np.argmax(np.hypot(*(points - start).T))]
+        return start
+
+    def _around(self, start: Vectors) -> BaseGeometry:
+        """Solid within the reach of a point, and some more."""
+        i, j = (int(k) for k in np.floor(start / self._side_m))
+        if (i, j) not in self._tiles:
+            low = np.array([i, j]) * self._side_m - 2 * self.reach_m
+            high = low + self._side_m + 4 * self.reach_m
+            self._tiles[i, j] = self._solid.intersection(box(*low, *high))
+        return self._tiles[i, j]
+
+
+def _extended(wall: RawWall, solid: _Solid) -> LineString:
     """Extend a wall's centre line at both ends as far as there is solid."""
     a, b = np.array(wall.start), np.array(wall.end)
-    step = (b - a) / np.hypot(*(b - a)) * reach_m
-    ends = [_last_solid(a, a - step, solid), _last_solid(b, b + step, solid)]
-    return LineString(ends)
-
-
-def _last_solid(start: Vectors, end: Vectors, solid: BaseGeometry) -> Vectors:
-    """Point up to which the line from `start` to `end` stays in the solid."""
-    for part in shapely.get_parts(LineString([start, end]).intersection(solid)):
-        points = shapely.get_coordinates(part)
-        if len(points) and np.hypot(*(points - start).T).min() < 1e-5:
-            return points[np.argmax(np.hypot(*(points - start).T))]
-    return start
+    step = (b - a) / np.hypot(*(b - a)) * solid.reach_m
+    return LineString([solid.last_point(a, a - step), solid.last_point(b, b + step)])
 
 
 def _bends(along: Vectors, other: LineString) -> bool:
@@ -234,12 +263,11 @@ def _cut(wall: RawWall, long: LineString, others: list[LineString]) -> RawWall:
     )
 
 
-def _reaching(wall: RawWall, long: LineString, ends: NDArray[np.object_]) -> RawWall:
-    """Extend a wall to the ends of others that were cut at its extended line."""
+def _reaching(wall: RawWall, ends: NDArray[np.object_]) -> RawWall:
+    """Extend a wall to ends that were cut at its extended line."""
     a, b = np.array(wall.start), np.array(wall.end)
     length = float(np.hypot(*(b - a)))
-    on_line = ends[np.array(shapely.dwithin(ends, long, 1e-6))]
-    s = (shapely.get_coordinates(list(on_line)) - a) @ (b - a) / length
+    s = (shapely.get_coordinates(list(ends)) - a) @ (b - a) / length
     slack = wall.thickness_m or 0.0
     s = s[(s > -slack) & (s < length + slack)]
     start, end = (a + (b - a) * float(t) / length for t in (s.min(), s.max()))

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import Polygon
 
-from floorplans.walls import Interval, Point
+from floorplans.walls import Interval, Point, complement
 
 MIN_THICKNESS_M = 0.02
 _MAX_SINE = np.sin(np.radians(6.0))
@@ -194,14 +194,38 @@ def _bent(
 def _singles(faces: list[_Face], strips: list[Strip]) -> Segments:
     """Unpaired sections that are not part of a wall already, (n, 2, 2)."""
     walls = [strip.area(strip.thickness_m + _CAP_M).buffer(_CAP_M) for strip in strips]
-    tree = shapely.STRtree(walls)
-    found: list[list[tuple[float, float]]] = []
-    for face in faces:
-        for low, high in face.free(0.0, face.length):
-            part = _part(face, low, high)
-            line = LineString([part.start, part.start + part.along * part.length])
-            near = [walls[i] for i in tree.query(line, "intersects").tolist()]
-            for rest in shapely.get_parts(line.difference(shapely.union_all(near))):
-                if rest.length >= min(_MIN_SINGLE_M, face.length - _CAP_M) and rest.length > _CAP_M:
-                    found.append([(float(x), float(y)) for x, y in rest.coords])
+    parts = [
+        (_part(face, low, high), face.length)
+        for face in faces
+        for low, high in face.free(0.0, face.length)
+    ]
+    found: list[list[NDArray[np.float64]]] = []
+    for (part, whole_m), covered in zip(parts, _covered([p for p, _ in parts], walls), strict=True):
+        for low, high in complement(covered, part.length):
+            if high - low >= min(_MIN_SINGLE_M, whole_m - _CAP_M) and high - low > _CAP_M:
+                found.append([part.start + part.along * s for s in (low, high)])
     return np.array(found, dtype=np.float64).reshape(-1, 2, 2)
+
+
+def _covered(faces: list[_Face], walls: list[Polygon]) -> list[list[Interval]]:
+    """Sections of each face inside convex walls."""
+    sections: list[list[Interval]] = [[] for _ in faces]
+    if not walls:
+        return sections
+    start, along = (
+        np.array([getattr(f, x) for f in faces]).reshape(-1, 2) for x in ("start", "along")
+    )
+    ends = start + along * np.array([face.length for face in faces])[:, None]
+    lines = np.array(shapely.linestrings(np.stack([start, ends], axis=1)), dtype=np.object_)
+    inside = np.array(walls, dtype=np.object_)
+    which, wall = shapely.STRtree(inside).query(lines, "intersects")
+    common = np.array(shapely.intersection(lines[which], inside[wall]), dtype=np.object_)
+    points, pair = shapely.get_coordinates(common, return_index=True)
+    s = np.sum((points - start[which[pair]]) * along[which[pair]], axis=1)
+    pairs, first = np.unique(pair, return_index=True)
+    low, high = np.minimum.reduceat(s, first), np.maximum.reduceat(s, first)
+    for i, section in zip(
+        which[pairs].tolist(), zip(low.tolist(), high.tolist(), strict=True), strict=True
+    ):
+        sections[i].append(section)
+    return sections

@@ -33,6 +33,9 @@ def by_material(wall: RawWall, areas: Mapping[str | None, BaseGeometry]) -> Iter
     RawWall
         In order along the wall.
     """
+    if len(areas) == 1:
+        yield replace(wall, material=next(iter(areas)))
+        return
     line = LineString([wall.start, wall.end])
     runs = _runs(line, areas)
     stops = [0.0, *((a[1] + b[0]) / 2 for a, b in pairwise(runs)), line.length]
