@@ -63,10 +63,14 @@ class _Network:
     lines : (n,) shapely lines
     """
 
-    def __init__(self, lines: Lines) -> None:
+    def __init__(self, lines: Lines, pieces: Lines | None = None) -> None:
         self.lines = lines
-        self._pieces = _noded(lines)
+        self._pieces = _noded(lines) if pieces is None else pieces
         self._tree = shapely.STRtree(self._pieces)
+
+    def around(self, region: Polygon) -> _Network:
+        """Lines that bound a region or lie outside: those within cannot extend it."""
+        return _Network(_not_within(self.lines, region), _not_within(self._pieces, region))
 
     def faces(self, links: NDArray[np.float64]) -> Lines:
         """Smallest regions that the lines and links enclose."""
@@ -163,10 +167,7 @@ def _enclosed_region(
     closed = _region(lines, network, np.empty((0, 2, 2)), given)
     if closed and closed.enclosed > 1 - _ENOUGH:
         return closed
-    if closed is None or given is not None:
-        outer = network
-    else:
-        outer = _Network(_not_within(lines, closed.polygon))
+    outer = network if closed is None or given is not None else network.around(closed.polygon)
     links = gap_links(outer.lines, max(limit_m, CLOSED_GAP_M))
     found = _best_region(lines, outer, links, given, limit_m)
     if is_strict and limit_m < CLOSED_GAP_M:
@@ -183,9 +184,9 @@ def _enclosed_region(
 
 
 def _not_within(lines: Lines, region: Polygon) -> Lines:
-    """Lines that bound a region or lie outside: those within cannot extend it."""
-    shapely.prepare(region)
-    return lines[~shapely.contains_properly(region, lines)]
+    inner = region.buffer(-_ON_EDGE_M)
+    shapely.prepare(inner)
+    return lines[~shapely.contains_properly(inner, lines)]
 
 
 def _best_region(
@@ -196,10 +197,14 @@ def _best_region(
     limit_m: float,
 ) -> _Region | None:
     """Region with most of the walls for the least width of gaps; None if there is none."""
-    lengths_m = link_lengths(links)
     best: _Region | None = None
     for gap_m in [*(width for width in _GAPS_M if width < limit_m), limit_m]:
-        region = _region(lines, outer, links[lengths_m <= gap_m], given)
+        region = _region(lines, outer, links[link_lengths(links) <= gap_m], given)
+        if region and given is None:
+            outer = outer.around(region.polygon)
+            links = shapely.get_coordinates(
+                _not_within(np.array(shapely.linestrings(links)), region.polygon)
+            ).reshape(-1, 2, 2)
         if region and (best is None or region.enclosed > best.enclosed + _ENOUGH):
             best = region
         if best and best.enclosed > 1 - _ENOUGH:
