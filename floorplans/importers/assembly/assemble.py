@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
 import shapely
 from shapely.geometry import LineString
 
@@ -28,6 +29,7 @@ from floorplans.importers.defaults import (
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported, ImportRecord
 from floorplans.importers.progress import N_STEPS, Progress, no_progress
+from floorplans.importers.tangle import check_crossings
 from floorplans.materials import MATERIALS, PlanMaterial
 from floorplans.plan import FloorPlan
 from floorplans.repair.geometry import Change, tidy_point
@@ -176,6 +178,7 @@ def _check(draft: Draft, options: ImportOptions) -> None:
             f"the walls extend over {side_m / 1000:.3g} km, more than any building; "
             "give the unit or scale of the file"
         )
+    check_crossings({"the file": np.array([(wall.start, wall.end) for wall in draft.walls])})
     for key in ("height_m", "wall_thickness_m", "tolerance_m"):
         value = getattr(options, key)
         if value is not None:

@@ -41,6 +41,7 @@ from floorplans.importers.dxf.openings import (
     openings_of_symbol,
 )
 from floorplans.importers.layer_names import unmatched
+from floorplans.importers.tangle import check_crossings
 from floorplans.importers.units import UNITS, check_size, guess_unit, unit_length
 
 if TYPE_CHECKING:
@@ -206,9 +207,16 @@ def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[Raw
 
 def _faces(content: Content, layers: Layers) -> NDArray[np.float64]:
     """All straight lines of walls and panes, (n, 2, 2) [m]."""
-    curves = [c for k in ("wall", "window") for name in layers.of(k) for c in content.curves[name]]
+    return _segments(
+        [c for k in ("wall", "window") for name in layers.of(k) for c in content.curves[name]]
+    )
+
+
+def _segments(curves: Sequence[Curve]) -> NDArray[np.float64]:
+    """Straight pieces of curves, (n, 2, 2)."""
     chains = [np.array([*curve.points, *curve.points[: curve.closed]]) for curve in curves]
-    return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
+    pieces = [np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains]
+    return np.concatenate([np.empty((0, 2, 2)), *pieces])
 
 
 def _panes(content: Content, layers: Layers) -> list[LineString]:
@@ -223,6 +231,9 @@ def _bodies(content: Content, layers: Layers) -> _Bodies:
     for layer in layers.of("wall"):
         curves.setdefault(layers.material(layer), []).extend(content.curves[layer])
     _check_number(curves)
+    check_crossings(
+        {f"layer {name}": _segments(content.curves[name]) for name in layers.of("wall")}
+    )
     by_material_ = {material: _thin_bodies(chains) for material, chains in curves.items()}
     faces = shapely.union_all([body for closed, _ in by_material_.values() for body in closed])
     beside = faces.buffer(_AT_FACE_M)
