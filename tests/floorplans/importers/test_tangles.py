@@ -119,7 +119,7 @@ def test_an_outline_does_not_depend_on_the_order_of_the_walls(seed: int):
 
 
 def test_a_thicket_of_long_lines_is_refused_before_the_slow_work_and_its_layer_named():
-    thicket = segments(2, 600, 50.0, 60.0)
+    thicket = segments(2, 900, 50.0, 60.0)
     with pytest.raises(PlanError, match=r"about .* times.*layer HATCH: .*leave it out"):
         check_crossings({"layer WALLS": segments(1, 100, 50.0, 4.0), "layer HATCH": thicket})
 
