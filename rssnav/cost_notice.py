@@ -94,8 +94,8 @@ def paths_announcement(
         return None
     memory = _memory(cost.memory_bytes + cost.paths * BYTES_A_PATH * (config.max_reflections + 3))
     return (
-        f"these paths will take {_roughly(cost)} {_duration(cost.seconds)} and {memory} of memory: "
-        f"some {_count(cost.paths)} of them; fewer reflections make it shorter"
+        f"estimate: {_count(cost.paths)} paths, {_roughly(cost)}{_duration(cost.seconds)} and "
+        f"{memory} of memory; fewer reflections reduce all three"
     )
 
 
@@ -103,15 +103,15 @@ def sentence(cost: CostEstimate, grid: Grid) -> str:
     """Return an estimate in words."""
     cells = grid.x.size * grid.y.size
     return (
-        f"this map will take {_roughly(cost)} {_duration(cost.seconds)} and "
-        f"{_memory(cost.memory_bytes)} of memory: some {_count(cost.paths)} paths over "
-        f"{_count(cells)} cells; larger cells, fewer reflections, --min-power or --max-paths make "
-        f"it shorter{_affordable(cost, grid)}"
+        f"estimate: {_count(cost.paths)} paths to {_count(cells)} cells, "
+        f"{_roughly(cost)}{_duration(cost.seconds)} and {_memory(cost.memory_bytes)} of memory; "
+        "larger cells, fewer reflections, --min-power or --max-paths reduce them"
+        f"{_affordable(cost, grid)}"
     )
 
 
 def _roughly(cost: CostEstimate) -> str:
-    return "by order of magnitude" if cost.is_extrapolated else "about"
+    return "on the order of " if cost.is_extrapolated else "about "
 
 
 def _memory(n_bytes: float) -> str:

@@ -19,9 +19,7 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
-INTERRUPTED_TEXT = (
-    "interrupted; files are written whole or not at all, so nothing is left half-done"
-)
+INTERRUPTED_TEXT = "interrupted; no incomplete file was written"
 
 LONGEST_END_S = 0.7
 """Time from the signal after which the process is ended, except while finished work is kept [s]."""

@@ -41,13 +41,13 @@ def _rescued(save: Callable[[Path], None], name: str) -> str:
     try:
         elsewhere = Path(tempfile.mkdtemp(prefix="rssnav-")) / name
     except OSError:
-        return "no folder of temporary files takes it either"
+        return "it could not be saved to a temporary folder either"
     try:
         save(elsewhere)
     except OSError:
         elsewhere.parent.rmdir()
-        return f"{elsewhere.parent.parent} does not take it either"
-    return f"the result is kept in {elsewhere}"
+        return f"it could not be saved to {elsewhere.parent.parent} either"
+    return f"the result was saved to {elsewhere} instead"
 
 
 def lenient(
@@ -62,7 +62,7 @@ def lenient(
             save(content)
         except OSError as error:
             if not noticed:
-                notice(f"finished runs cannot be kept until the end: {error}")
+                notice(f"finished runs cannot be saved before the end: {error}")
             noticed = True
 
     return try_to_save

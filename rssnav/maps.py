@@ -300,13 +300,13 @@ def current_content(
                 path,
                 remedy="replace_file",
             ) from error
-        report(f"{path} is damaged or of a different version; computing it again")
+        report(f"{path} is damaged or of a different version; recomputing it")
         return None
     found = difference(content)
     if found is None:
         report(f"{path} is up to date")
         return content
-    report(f"{path} was {found}; computing it again")
+    report(f"{path} was {found}; recomputing it")
     return None
 
 

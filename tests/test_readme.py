@@ -42,6 +42,43 @@ def test_the_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
             assert (tmp_path / target).stat().st_size > 1000
 
 
+def peers_of(page: str) -> list[list[str]]:
+    """Cells of the rows between the marks of a table of ray tracers."""
+    (table,) = re.findall(r"<!-- peers:.*?-->(.*?)<!-- end of peers -->", page, flags=re.DOTALL)
+    rows = re.findall(r"^\| (.*) \|$", table, flags=re.MULTILINE)
+    return [[cell.strip() for cell in row.split("|")] for row in rows]
+
+
+def test_its_comparison_is_that_of_the_performance_page() -> None:
+    page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
+    measured = {tuple(row[:2]): row for row in peers_of(page)}
+    _, _, *rows = peers_of(README)
+    assert len(rows) >= 5
+    for plan, tracer, found, missed, spurious, median_db, time_s in rows:
+        _, _, time, _, *counts, _, median, _ = measured[plan, tracer]
+        assert [found, missed, spurious, time_s] == [*counts, time]
+        assert median_db == (median or "–")
+
+
+def test_one_version_everywhere() -> None:
+    found = {
+        file: re.findall(pattern, (ROOT / file).read_text(encoding="utf-8"), flags=re.MULTILINE)[0]
+        for file, pattern in {
+            "pyproject.toml": r'^version = "(.*)"$',
+            "CITATION.cff": r"^version: (.*)$",
+            "README.md": r"^  version = \{(.*)\},$",
+            "CHANGELOG.md": r"^## (\d.*) \(",
+        }.items()
+    }
+    assert len(set(found.values())) == 1, found
+
+
+def test_the_citation_has_the_date_of_the_release() -> None:
+    (date,) = re.findall(r"^date-released: (.*)$", (ROOT / "CITATION.cff").read_text("utf-8"), re.M)
+    changelog = (ROOT / "CHANGELOG.md").read_text("utf-8")
+    assert re.findall(r"^## \d.* \((.*)\)$", changelog, re.M)[0] == date
+
+
 def test_every_make_target_it_names_exists() -> None:
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     named = set(re.findall(r"`?make ([a-z]+)", README))

@@ -62,14 +62,17 @@ def calibrate_plan(
     plan: Plan,
     survey: SurveyFile,
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="FILE", help="File of the calibrated plan.")
+        Path,
+        typer.Option(
+            "-o", "--output", metavar="FILE", help="File for the calibrated plan (.toml)."
+        ),
     ],
     transmitters: TransmitterFile = None,
     material: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME",
-            help="A material to fit; may be repeated.",
+            help="Material to fit; repeatable.",
             show_default="all dielectrics of the plan",
         ),
     ] = None,
@@ -87,10 +90,9 @@ def calibrate_plan(
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
-    """Fit the materials of a plan to a survey, and say how much better readings are predicted.
+    """Fit a plan's material properties to measured RSS, and report the held-out error.
 
-    The plan is written only if readings that were held out are predicted better. Ctrl-C leaves the
-    old files or none.
+    FILE is written only if the fit predicts held-out readings better than the plan's own materials.
     """
     check_suffix(output, (".toml",), "--output")
     check_suffix(report, (".html",), "--report")
@@ -129,9 +131,9 @@ def calibrate_plan(
     if not found.is_better:
         change = found.space
         print_error(
-            f"{plan}: readings held out are predicted no better, {change.before.sigma_db:.2f} dB "
-            f"before and {change.after.sigma_db:.2f} dB after; the plan is kept, {output} is not "
-            "written"
+            f"{plan}: the fit does not improve held-out readings, sigma "
+            f"{change.before.sigma_db:.2f} dB before and {change.after.sigma_db:.2f} dB after; "
+            f"{output} is not written"
         )
         raise typer.Exit(EXIT_FAILURE)
     note(f"wrote {output}")
@@ -160,9 +162,9 @@ def _print(found: Calibration) -> None:
     )
     for told in found.found.not_told:
         say(
-            f"{told.value.material}, {told.value.kind}: kept; readings vary by "
-            f"{told.sensitivity_db:.2g} dB over its prior, which narrows to "
-            f"{100.0 * told.narrowing:.0f} %"
+            f"{told.value.material}, {told.value.kind}: not fitted; one standard deviation of its "
+            f"prior changes readings by {told.sensitivity_db:.2g} dB, and they narrow the prior "
+            f"to {100.0 * told.narrowing:.0f} %"
         )
     for doubt in found.doubts:
         say(f"doubtful: {doubt}")

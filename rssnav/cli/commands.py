@@ -45,11 +45,11 @@ COMMANDS = {
     "plan": Entry(("plan",), "Show, check, import and export floor plans."),
     "map": Entry(
         ("radio_maps",),
-        "Trace the radio map of a plan: RSS in every cell, from all paths of bounded order.",
+        "Compute the radio map of a plan: RSS in every cell, from all paths up to a given order.",
     ),
     "maps": Entry(
         ("radio_maps",),
-        "Trace the radio maps of the paper's two scenarios, and draw them.",
+        "Compute and draw the radio maps of the paper's two scenarios.",
     ),
     "paths": Entry(
         ("paths",),
@@ -57,23 +57,23 @@ COMMANDS = {
     ),
     "validate": Entry(
         ("validate",),
-        "Compare traced RSS with a survey, beside the usual models, on readings held out.",
+        "Compare traced RSS and empirical models with measured RSS, on held-out readings.",
     ),
     "calibrate": Entry(
         ("calibrate",),
-        "Fit the materials of a plan to a survey, and say how much better readings are predicted.",
+        "Fit a plan's material properties to measured RSS, and report the held-out error.",
     ),
     "example": Entry(
         ("example",),
-        "Write the files of a measured flat: its plan, a survey, and the licence to use them.",
+        "Write an example data set: a flat's plan, a survey of measured RSS, and a licence.",
     ),
     "train": Entry(
         ("train",),
-        "Train an agent to fly from a plan's start to its source, in many realisations.",
+        "Train an agent to fly from a plan's start to its source, in independent realisations.",
     ),
     "fly": Entry(
         ("fly",),
-        "Make a film of a trained UAV's flight: its path over the map, and its RSS readings.",
+        "Animate a trained UAV's flight: its path over the map, and its RSS readings.",
     ),
     "explore": Entry(
         ("explore",),
@@ -81,11 +81,11 @@ COMMANDS = {
     ),
     "experiments": Entry(
         ("experiments",),
-        "Run the whole paper, or a study beyond it: maps, trainings, figures, tables, a report.",
+        "Reproduce the paper, or run a further study: maps, training, figures, tables, report.",
     ),
     "report": Entry(
         ("experiments",),
-        "Recompute figures, tables and report from the maps and trainings of an earlier run.",
+        "Regenerate figures, tables and report from the maps and training of an earlier run.",
     ),
     "doctor": Entry(
         ("doctor",),
@@ -102,6 +102,14 @@ def list_in(app: typer.Typer) -> None:
 
 def _unloaded() -> None:
     """Placeholder of a command until `Commands` loads it."""
+
+
+def _join_help_lines(command: Any) -> None:
+    """Make each paragraph of a docstring one line, which the terminal wraps at its own width."""
+    paragraphs = (command.help or "").split("\n\n")
+    command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
+    for part in getattr(command, "commands", {}).values():
+        _join_help_lines(part)
 
 
 @contextmanager
@@ -124,6 +132,7 @@ class Commands(TyperGroup):
         for module in COMMANDS[name].modules:
             import_module(f"rssnav.cli.{module}").add_to(part)
         self.commands[name] = get_group(part).commands[name]
+        _join_help_lines(self.commands[name])
         check_before_work(self.commands[name])
 
     def main(self, *args: Any, **kwargs: Any) -> Any:

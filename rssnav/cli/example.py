@@ -21,12 +21,10 @@ def add_to(parent: typer.Typer) -> None:
 
 
 def write_example(
-    out: Annotated[
-        Path, typer.Option(metavar="FOLDER", help="Folder to write the files into.")
-    ] = FOLDER,
+    out: Annotated[Path, typer.Option(metavar="FOLDER", help="Output folder.")] = FOLDER,
     force: Force = False,
 ) -> None:
-    """Write the files of a measured flat: its plan, a survey, and the licence to use them."""
+    """Write an example data set: a flat's plan, a survey of measured RSS, and a licence."""
     source = files("rssnav.measurements") / "measured_flat"
     contents = {out / file.name: file.read_bytes() for file in source.iterdir()}
     for path in contents:

@@ -15,7 +15,7 @@ from rssnav.cli.options import MAX_RUNS, MaxMemory, Seed, Style, Threads, exampl
 if TYPE_CHECKING:
     from rssnav.experiments.paper import Paper
 
-Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Folder of all results.")]
+Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Output folder.")]
 RESULTS = Path("results")
 
 
@@ -48,13 +48,14 @@ def run_experiments(
     what: Annotated[
         What,
         typer.Argument(
-            help="The paper; or the effect of choices it does not specify (sensitivity), RSS "
-            "readings that fluctuate (noise), other methods and the optimum (comparison), flights "
-            "that have the printed lengths (readings)."
+            help="paper, or a study: choices that the paper does not specify (sensitivity), "
+            "fluctuating RSS readings (noise), other methods and the optimum (comparison), or "
+            "flights that have the printed lengths (readings)."
         ),
     ] = What.PAPER,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Few realisations: the same figures in a minute.")
+        bool,
+        typer.Option("--quick", help="8 realisations instead of 100: all figures in a minute."),
     ] = False,
     out: Out = RESULTS,
     runs: Annotated[
@@ -70,18 +71,16 @@ def run_experiments(
     seed: Seed = 0,
     resume: Annotated[
         bool,
-        typer.Option(
-            "--resume/--no-resume", help="Continue from existing trainings, or start over."
-        ),
+        typer.Option("--resume/--no-resume", help="Resume from saved runs, or start over."),
     ] = True,
     style: Style = None,
     max_memory: MaxMemory = None,
     threads: Threads = None,
 ) -> None:
-    """Run the whole paper, or a study beyond it: maps, trainings, figures, tables, a report.
+    """Reproduce the paper, or run a further study: maps, training, figures, tables, report.
 
-    Existing results that are up to date are reused. Finished runs are kept every few seconds: after
-    Ctrl-C or a crash the same command continues from there.
+    Results that are up to date are reused. Finished runs are saved every few seconds, so that the
+    same command resumes after Ctrl-C or a crash.
     """
     if what is not What.PAPER and runs is not None:
         raise typer.BadParameter("--runs applies to the paper only.")
@@ -93,8 +92,8 @@ def run_experiments(
             _run_study(what, out, quick, seed, threads, max_memory_bytes, resume, style)
     except KeyboardInterrupt as interrupt:
         raise KeyboardInterrupt(
-            f"interrupted; finished maps and runs are kept in {out}, and the same command "
-            "continues from there"
+            f"interrupted; finished maps and runs are saved in {out}; run the same command "
+            "again to resume"
         ) from interrupt
 
 
@@ -161,7 +160,7 @@ def remake_report(
     max_memory: MaxMemory = None,
     threads: Threads = None,
 ) -> None:
-    """Recompute figures, tables and report from the maps and trainings of an earlier run."""
+    """Regenerate figures, tables and report from the maps and training of an earlier run."""
     from rssnav.experiments.paper import report_again
     from rssnav.pictures.style import chosen_style
 

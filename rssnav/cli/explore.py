@@ -50,7 +50,7 @@ def explore(
             "--allow-origin",
             metavar="HOST[:PORT]",
             parser=_check_origin,
-            help="Another host under which browsers may open the page; may be repeated.",
+            help="Another host name under which browsers may open the page; repeatable.",
             show_default=False,
         ),
     ] = None,
@@ -61,7 +61,7 @@ def explore(
 ) -> None:
     """Open the explorer in the browser: move the source, see its map, train a UAV.
 
-    Ctrl-C ends it.
+    Stop it with Ctrl-C.
     """
     import floorplans
 

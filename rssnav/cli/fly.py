@@ -37,7 +37,7 @@ def fly(
         list[Path],
         typer.Argument(
             metavar="TRAINING...",
-            help="Results of rssnav train -o; one flight of each is shown.",
+            help="Training results (rssnav train -o); one flight of each is shown.",
             show_default=False,
         ),
     ],
@@ -55,7 +55,7 @@ def fly(
             metavar="N",
             min=0,
             max=MAX_RUNS,
-            help="Realisation, counted from 0.",
+            help="Index of the realisation to show, from 0.",
             show_default="the one of median length",
         ),
     ] = None,
@@ -65,7 +65,7 @@ def fly(
     style: Style = None,
     as_json: Json = False,
 ) -> None:
-    """Make a film of a trained UAV's flight: its path over the map, and its RSS readings."""
+    """Animate a trained UAV's flight: its path over the map, and its RSS readings."""
     from rssnav.pictures.flight_movie import SUFFIXES, MovieError, save_flight_movie
     from rssnav.pictures.style import chosen_style
 

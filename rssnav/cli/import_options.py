@@ -12,9 +12,7 @@ _KNOWN = "; ".join(f"{kind.title} ({', '.join(kind.suffixes)})" for kind in FORM
 
 ImportedFile = Annotated[
     Path,
-    typer.Argument(
-        metavar="FILE", help=f"A file of another program: {_KNOWN}.", show_default=False
-    ),
+    typer.Argument(metavar="FILE", help=f"Input file: {_KNOWN}.", show_default=False),
 ]
 Output = Annotated[
     Path, typer.Option("-o", "--output", metavar="FILE", help="The .toml file to write.")
@@ -36,7 +34,7 @@ WallThickness = Annotated[
         metavar="M",
         min=1e-4,
         max=1000.0,
-        help="Of walls whose thickness the file does not state.",
+        help="Thickness of walls for which the file gives none.",
         show_default="0.1",
     ),
 ]
@@ -44,7 +42,7 @@ WallMaterial = Annotated[
     str | None,
     typer.Option(
         metavar="MATERIAL",
-        help="Of walls whose material the file does not state.",
+        help="Material of walls for which the file gives none.",
         show_default="plasterboard, concrete where thick",
     ),
 ]
@@ -60,12 +58,17 @@ Start = Annotated[
     typer.Option(metavar="X,Y", help="Start of the search.", show_default="far from the source"),
 ]
 Unit = Annotated[
-    str | None, typer.Option(help="Of the file: mm, cm, m, in, ft ...", show_default="the file's")
+    str | None,
+    typer.Option(
+        help="Unit of length in the file: mm, cm, m, in, ft ...", show_default="the file's"
+    ),
 ]
-Level = Annotated[str | None, typer.Option(help="Which storey, where the file holds several.")]
+Level = Annotated[
+    str | None, typer.Option(help="Storey to import; required if the file has several.")
+]
 Scale = Annotated[
     float | None,
-    typer.Option(metavar="M", min=1e-4, max=1000.0, help="Side of a pixel, for pictures."),
+    typer.Option(metavar="M", min=1e-4, max=1000.0, help="Size of a pixel, for pictures."),
 ]
 WallTolerance = Annotated[
     float | None,
@@ -73,14 +76,15 @@ WallTolerance = Annotated[
         metavar="M",
         min=1e-9,
         max=1000.0,
-        help="How far walls may be moved to meet.",
+        help="Maximum distance by which walls are moved to meet.",
         show_default="the format's",
     ),
 ]
 KeepAxes = Annotated[
     bool,
     typer.Option(
-        "--keep-axes", help="Do not turn a building that is drawn at an angle to its own axes."
+        "--keep-axes",
+        help="Keep the drawing's axes instead of rotating the plan to the building's own.",
     ),
 ]
 CloseGaps = Annotated[
@@ -97,15 +101,17 @@ Layer = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME=KIND[:MATERIAL]",
-        help="What a layer or type is: wall, door, window or ignore; NAME may hold * and ?.",
+        help="Kind of a layer or type: wall, door, window or ignore; NAME may contain * and ?.",
     ),
 ]
 Layers = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Meanings of layers that --save-layers wrote.")
+    Path | None, typer.Option(metavar="FILE", help="Kinds of layers saved by --save-layers.")
 ]
 SaveLayers = Annotated[
     Path | None,
-    typer.Option(metavar="FILE", help="Write --layers and --layer to this .toml file."),
+    typer.Option(
+        metavar="FILE", help="Save the kinds given by --layers and --layer to this .toml file."
+    ),
 ]
 ReportPage = Annotated[
     Path | None,
@@ -115,7 +121,7 @@ ReportPage = Annotated[
         "assumed and closed.",
     ),
 ]
-Replace = Annotated[bool, typer.Option("--force", help="Replace whatever is at FILE.")]
+Replace = Annotated[bool, typer.Option("--force", help="Overwrite FILE if it exists.")]
 
 
 def start_of(text: str | None) -> tuple[float, float] | None:

@@ -44,7 +44,7 @@ Plan = Annotated[
 ]
 CellSize = Annotated[
     float,
-    typer.Option("--cell-size", metavar="M", min=0.05, max=100.0, help="Side of a cell in metres."),
+    typer.Option("--cell-size", metavar="M", min=0.05, max=100.0, help="Cell size in metres."),
 ]
 Height = Annotated[
     float,
@@ -90,7 +90,7 @@ Transmissions = Annotated[
         metavar="N",
         min=0,
         max=20,
-        help="Maximum transmissions through walls on a path.",
+        help="Maximum number of transmissions through walls on a path.",
         show_default=_OF_PRESET,
     ),
 ]
@@ -99,7 +99,7 @@ From = Annotated[
     typer.Option(
         "--from",
         metavar="WHICH",
-        help="The transmitter: an id of the plan's, source, or X,Y,Z in metres.",
+        help="Transmitter: an id in the plan, source, or X,Y,Z in metres.",
         show_default="the source, otherwise the plan's transmitter",
     ),
 ]
@@ -108,7 +108,7 @@ FromSeveral = Annotated[
     typer.Option(
         "--from",
         metavar="WHICH",
-        help="A transmitter: an id of the plan's, source, X,Y,Z in metres, or all; repeatable.",
+        help="Transmitter: an id in the plan, source, X,Y,Z in metres, or all; repeatable.",
         show_default="the source, otherwise all transmitters",
     ),
 ]
@@ -119,7 +119,7 @@ MinPower = Annotated[
         metavar="DBM",
         min=-1000.0,
         max=200.0,
-        help="Prune paths that are weaker; the map stores a bound on their power.",
+        help="Leave out paths below this power; the map stores a bound on what is missing.",
         show_default="no threshold",
     ),
 ]
@@ -130,7 +130,7 @@ MaxPaths = Annotated[
         metavar="N",
         min=1,
         max=2**62,
-        help="Raise --min-power until the map needs no more paths than this.",
+        help="Maximum number of paths in the map; raises --min-power as needed.",
         show_default="no limit",
     ),
 ]
@@ -143,7 +143,7 @@ def _max_memory(default: str) -> Any:
         metavar="GB",
         min=0.001,
         max=1e6,
-        help="Memory that a trace may take; it ends with a message before it takes more.",
+        help="Memory limit of a trace in GB; a trace that needs more stops with an error.",
         show_default=default,
     )
 
@@ -178,8 +178,8 @@ AntennaName = Annotated[
         "--antenna",
         metavar="NAME",
         callback=_check_antenna,
-        help="Of the transmitter: isotropic, dipole (vertical), monopole, patch, sector, or a "
-        "pattern.csv.",
+        help="Transmit antenna: isotropic, dipole (vertical), monopole, patch, sector, or a "
+        "CSV file with a pattern.",
         show_default="the transmitter's in the plan, otherwise the preset's",
     ),
 ]
@@ -189,8 +189,8 @@ ReceiveAntennaName = Annotated[
         "--receive-antenna",
         metavar="NAME",
         callback=_check_antenna,
-        help="Of the receivers: isotropic, dipole (vertical), monopole, patch, sector, or a "
-        "pattern.csv.",
+        help="Receive antenna: isotropic, dipole (vertical), monopole, patch, sector, or a "
+        "CSV file with a pattern.",
         show_default=_OF_PRESET,
     ),
 ]
@@ -200,7 +200,7 @@ Edition = Annotated[
         "--edition",
         metavar="P.2040-N",
         callback=_known_edition,
-        help="Edition of ITU-R P.2040 for the built-in materials.",
+        help="Edition of ITU-R P.2040 for built-in materials.",
         show_default="the plan's, otherwise the newest",
     ),
 ]
@@ -211,19 +211,19 @@ Threads = Annotated[
         metavar="N",
         min=1,
         max=4096,
-        help="Number of threads; the result does not depend on it.",
+        help="Number of threads; does not change the result.",
         show_default="all processors",
     ),
 ]
 Runs = Annotated[
-    int, typer.Option("--runs", metavar="N", min=1, max=MAX_RUNS, help="Realisations.")
+    int, typer.Option("--runs", metavar="N", min=1, max=MAX_RUNS, help="Number of realisations.")
 ]
 Seed = Annotated[
     int,
-    typer.Option("--seed", metavar="N", min=0, max=2**63 - 1, help="Same seed, same result."),
+    typer.Option("--seed", metavar="N", min=0, max=2**63 - 1, help="Seed of the random numbers."),
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
-Force = Annotated[bool, typer.Option("--force", help="Recompute it, and replace an existing FILE.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Force = Annotated[bool, typer.Option("--force", help="Recompute, and overwrite FILE.")]
 Picture = Annotated[
     Path | None,
     typer.Option(
@@ -254,7 +254,7 @@ Style = Annotated[
         "--style",
         metavar="NAME",
         callback=_check_style,
-        help="A matplotlib style on top of the project's: its name, or a .mplstyle file.",
+        help="Matplotlib style applied over the default one: a name or a .mplstyle file.",
         show_default=False,
     ),
 ]

@@ -99,7 +99,7 @@ def show_paths(
     edition: Edition = None,
     style: Style = None,
     as_json: Json = False,
-    as_csv: Annotated[bool, typer.Option("--csv", help="Print CSV, for spreadsheets.")] = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False,
 ) -> None:
     """Trace all paths from a transmitter to a receiver and print the strongest.
 

@@ -77,13 +77,13 @@ def show(
             "-o",
             "--output",
             metavar="FILE",
-            help="Draw into a .png, .svg or .pdf; an .html or .glb is an interactive 3D view.",
+            help="Output file: .png, .svg or .pdf; .html or .glb for an interactive 3D view.",
         ),
     ] = None,
     view: Annotated[
         Literal["2d", "3d"] | None,
         typer.Option(
-            help="From above, or walls in three dimensions.",
+            help="View from above, or of the walls in 3D.",
             show_default="2d; 3d for .html and .glb",
         ),
     ] = None,

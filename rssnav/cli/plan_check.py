@@ -47,7 +47,7 @@ def check(
         bool,
         typer.Option(
             "--fix",
-            help="First repair what is safe: walls that almost meet, duplicate walls.",
+            help="Repair walls that almost meet and duplicate walls before checking.",
         ),
     ] = False,
     output: Annotated[
@@ -57,15 +57,16 @@ def check(
             "--output",
             metavar="FILE",
             help="Where --fix writes the repaired plan.",
-            show_default="PLAN itself; the old one is kept as PLAN.bak",
+            show_default="PLAN, with a backup in PLAN.bak",
         ),
     ] = None,
     as_json: Json = False,
 ) -> None:
     """Check a plan: the file, the walls, the rooms, and whether the source can be reached.
 
-    Reports all findings with coordinates, and what concerns a map apart from what concerns a
-    flight. Warnings are for you to judge; errors give exit code 1.
+    Lists all errors and warnings with coordinates, separately for maps and for flights. A file
+    that cannot be read as a plan (invalid TOML, a missing key, a value of the wrong type or out of
+    range) is reported at its first fault. Exits with status 1 on errors.
     """
     if output is not None and not fix:
         raise typer.BadParameter("only --fix writes a file.", param_hint="--output")
@@ -111,7 +112,7 @@ def _is_usable(plan: UncheckedPlan) -> bool:
 def _write(repaired: RepairedPlan, old_text: str, path: Path, output: Path | None) -> None:
     """Write a repaired plan; keep the old one beside it where it is replaced."""
     if not repaired.changes:
-        note("nothing to repair safely")
+        note("no safe repairs found")
         return
     target = output or path
     in_place = target.resolve() == path.resolve()
@@ -122,7 +123,7 @@ def _write(repaired: RepairedPlan, old_text: str, path: Path, output: Path | Non
         beside.write_text(repaired.toml(), encoding="utf-8", newline="\n")
     for change in repaired.changes:
         note(f"repaired {change}")
-    kept = f"; the old plan is in {path.name}.bak" if in_place else ""
+    kept = f"; the original is in {path.name}.bak" if in_place else ""
     note(f"wrote {target}{kept}")
 
 
@@ -195,7 +196,7 @@ def _print_checked(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence
         _print_findings([finding for finding in findings if finding.concerns == "flight"])
     else:
         missing = " and no ".join(k for k in ("source", "start") if getattr(plan, k) is None)
-        say(f"not checked: the plan has no {missing}")
+        say(f"not checked, because the plan has no {missing}")
 
 
 def _print_flights(flights: Sequence[Reach]) -> None:
@@ -205,7 +206,7 @@ def _print_flights(flights: Sequence[Reach]) -> None:
         [
             (f.speed, f.steps, f"{f.length_m:.2f} m", "")
             if f.steps is not None
-            else (f.speed, "-", "-", "the source cannot be reached at this speed")
+            else (f.speed, "-", "-", "the source is not reachable at this speed")
             for f in flights
         ],
     )

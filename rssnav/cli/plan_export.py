@@ -33,7 +33,7 @@ def export(
             "-o",
             "--output",
             metavar="FILE",
-            help=f"Its ending names the format: {', '.join(_SUFFIXES)}.",
+            help=f"Output file; the extension selects the format: {', '.join(_SUFFIXES)}.",
         ),
     ],
     resolution: Annotated[
@@ -48,8 +48,8 @@ def export(
             metavar="M",
             min=0.0,
             max=1000.0,
-            help="Height in metres of the section that a ROS map shows.",
-            show_default="1, or half the storey where that is less",
+            help="Height in metres of the horizontal section shown in a ROS map.",
+            show_default="1, or half the storey height if that is less",
         ),
     ] = None,
     frequency: Annotated[
@@ -58,7 +58,7 @@ def export(
             metavar="GHZ",
             min=0.001,
             max=1000.0,
-            help="For own materials in a Sionna RT scene, in GHz.",
+            help="Frequency in GHz at which the plan's own materials are evaluated (Sionna RT).",
         ),
     ] = 2.4,
 ) -> None:

@@ -49,7 +49,7 @@ def print_import(imported: Imported, output: Path) -> None:
         say(sentence)
     print_summary(imported.plan)
     print_warnings(imported)
-    say(f"\nwrote {output}; see it with: rssnav plan show {output}")
+    say(f"\nwrote {output}; view it with: rssnav plan show {output}")
 
 
 def print_warnings(imported: ImportRecord) -> None:
@@ -62,7 +62,10 @@ def _print_layer_option(imported: Imported) -> None:
     unknown = [use for use in imported.layers if use.is_unknown]
     if unknown:
         largest = max(unknown, key=lambda use: use.n_objects)
-        say(f"layers of unknown names are walls with, for example, --layer '{largest.name}=wall'")
+        say(
+            "import a layer with an unknown name as walls with, for example, "
+            f"--layer '{largest.name}=wall'"
+        )
 
 
 def _print_changes(changes: tuple[Change, ...]) -> None:
@@ -94,7 +97,7 @@ def write_draft(draft: DraftPlan, output: Path, force: bool) -> None:
 
     file, picture = output.with_suffix(".draft.toml"), output.with_suffix(".draft.png")
     if file.exists() and not force:
-        note(f"{file} exists already and stays as it is; use --force to replace it")
+        note(f"{file} already exists; use --force to overwrite")
         return
     with atomic_write(file) as beside:
         beside.write_text(draft.toml(), encoding="utf-8", newline="\n")

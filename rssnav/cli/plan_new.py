@@ -29,7 +29,7 @@ def new(
     height: Annotated[
         float, typer.Option(metavar="M", min=2.5, max=50.0, help="From floor to ceiling in metres.")
     ] = 3.0,
-    force: Annotated[bool, typer.Option("--force", help="Replace whatever is at FILE.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite FILE if it exists.")] = False,
 ) -> None:
     """Write a starter plan of three rooms, with comments that explain every key."""
     from floorplans.starter import starter_plan
@@ -50,4 +50,4 @@ def new(
         raise FileExistsError(17, "already exists; use --force to overwrite", str(output))
     with atomic_write(output) as beside:
         beside.write_text(text, encoding="utf-8", newline="\n")
-    say(f"wrote {output}; see it with: rssnav plan show {output}")
+    say(f"wrote {output}; view it with: rssnav plan show {output}")

@@ -85,10 +85,10 @@ def map_plan(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Trace the radio map of a plan: RSS in every cell, from all paths of bounded order.
+    """Compute the radio map of a plan: RSS in every cell, from all paths up to a given order.
 
-    Several transmitters have a map each, in one file. A map that is up to date is not recomputed.
-    Ctrl-C leaves the old file or none.
+    With several transmitters, FILE holds one map for each. A map that is up to date is not
+    recomputed.
     """
     check_suffix(picture, PICTURE_SUFFIXES, "--picture")
     loaded = floorplans.load(plan)
@@ -161,7 +161,7 @@ def _note_dark_cells(plan: FloorPlan, radio_map: RadioMap) -> None:
 
 
 def map_scenarios(
-    out: Annotated[Path, typer.Option(metavar="FOLDER", help="Folder of the maps.")] = Path(
+    out: Annotated[Path, typer.Option(metavar="FOLDER", help="Output folder.")] = Path(
         "results/maps"
     ),
     style: Style = None,
@@ -169,9 +169,9 @@ def map_scenarios(
     threads: Threads = None,
     force: Force = False,
 ) -> None:
-    """Trace the radio maps of the paper's two scenarios, and draw them.
+    """Compute and draw the radio maps of the paper's two scenarios.
 
-    Only what has changed is recomputed.
+    Maps that are up to date are not recomputed.
     """
     from rssnav.experiments.paper.scenarios import PLANS
 

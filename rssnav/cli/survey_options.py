@@ -14,21 +14,23 @@ if TYPE_CHECKING:
 
 SurveyFile = Annotated[
     Path,
-    typer.Argument(metavar="SURVEY", help="A CSV file: tx, x, y, z, rss_dbm.", show_default=False),
+    typer.Argument(
+        metavar="SURVEY", help="CSV file with the columns tx, x, y, z, rss_dbm.", show_default=False
+    ),
 ]
 TransmitterFile = Annotated[
     Path | None,
     typer.Option(
         "--transmitters",
         metavar="FILE",
-        help="A CSV file of the transmitters: tx, x, y, z.",
-        show_default="those of the plan",
+        help="CSV file of the transmitters with the columns tx, x, y, z.",
+        show_default="those in the plan",
     ),
 ]
 Offset = Annotated[
     Literal["one", "transmitter", "device"],
     typer.Option(
-        "--offset", help="What a constant offset is fitted for: all readings, or each of these."
+        "--offset", help="Fit one constant offset, or one for each transmitter or device."
     ),
 ]
 Square = Annotated[
@@ -38,7 +40,7 @@ Square = Annotated[
         metavar="M",
         min=0.01,
         max=1000.0,
-        help="Side of the squares of which every second one is held out.",
+        help="Side in metres of the chequerboard squares for spatial cross-validation.",
     ),
 ]
 SurveyFrequency = Annotated[
@@ -56,7 +58,7 @@ Antennas = Annotated[
     Literal["isotropic", "dipole"] | None,
     typer.Option(
         "--antenna",
-        help="Of transmitters and receivers; a dipole is vertical.",
+        help="Antenna of transmitters and receivers; dipoles are vertical.",
         show_default="the transmitters' in the plan, otherwise the preset's",
     ),
 ]

@@ -93,10 +93,10 @@ def train_agent(
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
-    """Train an agent to fly from a plan's start to its source, in many realisations.
+    """Train an agent to fly from a plan's start to its source, in independent realisations.
 
-    Finished runs are kept in FILE every few seconds: after Ctrl-C or a crash the same command
-    continues from there.
+    With -o, finished runs are saved every few seconds, so that the same command resumes after
+    Ctrl-C or a crash.
     """
     loaded = floorplans.load(plan)
     radio_map = RadioMap.load(map_file)
@@ -240,12 +240,12 @@ class _Job:
         """Save finished runs; return a message that says what was kept."""
         runs = self._schedule["runs"]
         if finished is None:
-            return f"interrupted before the first of {runs} runs was finished; nothing to keep"
+            return f"interrupted before the first of {runs} runs finished; nothing was saved"
         done = f"interrupted; {finished.run_ids.size} of {runs} runs are finished"
         if self._output is None:
-            return f"{done} and lost, as no -o FILE was given to keep them"
+            return f"{done}; they are lost, because no -o FILE was given"
         save_or_rescue(finished.save, self._output)
-        return f"{done} and kept in {self._output}; the same command continues from there"
+        return f"{done} and saved to {self._output}; run the same command again to resume"
 
 
 def _summary(result: TrainingResult) -> dict[str, Any]:
@@ -309,7 +309,7 @@ def _print(summary: dict[str, Any], output: Path | None) -> None:
     ]
     print_pairs(pairs)
     if output is not None:
-        say(f"kept in {output}")
+        say(f"saved to {output}")
 
 
 def _text(spread: dict[str, float] | None, digits: int = 0) -> str:

@@ -34,14 +34,15 @@ Episodes = Annotated[
         metavar="N",
         min=1,
         max=10_000_000,
-        help="Episodes of each; a maximum with --until-converged.",
+        help="Episodes per run; the maximum with --until-converged.",
         show_default=f"{EPISODES}, or {EPISODES_TO_CONVERGE} with --until-converged",
     ),
 ]
 UntilConverged = Annotated[
     bool,
     typer.Option(
-        "--until-converged", help="Stop a run when it flies the same path three times in a row."
+        "--until-converged",
+        help="Stop a run after three consecutive episodes with the same flight.",
     ),
 ]
 ResultFile = Annotated[
@@ -50,19 +51,19 @@ ResultFile = Annotated[
         "-o",
         "--output",
         metavar="FILE",
-        help="File of the result (HDF5). Runs that it has already are not trained again.",
+        help="Save the result to FILE (HDF5). Runs that it already holds are not repeated.",
         show_default=False,
     ),
 ]
-Force = Annotated[bool, typer.Option("--force", help="Train from scratch, and replace FILE.")]
+Force = Annotated[bool, typer.Option("--force", help="Train from scratch, and overwrite FILE.")]
 Tolerance = Annotated[
     float | None,
     typer.Option(
         metavar="DB",
         min=0.0,
         max=1000.0,
-        help="A reading within this of a known state is that state.",
-        show_default="every value is a state",
+        help="RSS readings within this distance of a known state belong to it.",
+        show_default="each RSS value is a state",
         rich_help_panel=STATES,
     ),
 ]
@@ -72,8 +73,8 @@ Interval = Annotated[
         metavar="DB",
         min=0.001,
         max=1000.0,
-        help="States are RSS intervals of this width.",
-        show_default="every value is a state",
+        help="Use RSS intervals of this width as states.",
+        show_default="each RSS value is a state",
         rich_help_panel=STATES,
     ),
 ]
@@ -93,7 +94,7 @@ Sensitivity = Annotated[
         metavar="DBM",
         min=-1000.0,
         max=1000.0,
-        help="The RSS agent reads no signal where the RSS is not above this.",
+        help='Sensitivity of the receiver: at or below it, the RSS agent reads "no signal".',
         rich_help_panel=STATES,
     ),
 ]
@@ -133,7 +134,9 @@ Eta = Annotated[
 ]
 InitialQ = Annotated[
     float,
-    typer.Option(metavar="Q", min=-1e9, max=1e9, help="Initial Q.", rich_help_panel=LEARNING),
+    typer.Option(
+        metavar="Q", min=-1e9, max=1e9, help="Initial value of Q.", rich_help_panel=LEARNING
+    ),
 ]
 MaxSteps = Annotated[
     int,

@@ -71,10 +71,10 @@ def validate_plan(
     threads: Threads = None,
     as_json: Json = False,
 ) -> None:
-    """Compare traced RSS with a survey, beside the usual models, on readings held out.
+    """Compare traced RSS and empirical models with measured RSS, on held-out readings.
 
-    By space, half of a chequerboard's squares is predicted with offsets fitted to the other half;
-    by transmitter, each is predicted with offsets fitted to the others.
+    Two cross-validations: by space, with the squares of a chequerboard as folds, and by
+    transmitter, leaving one out.
     """
     check_suffix(report, (".html",), "--report")
     loaded = floorplans.load(plan)

@@ -102,11 +102,11 @@ class TrainingStore:
             earlier = TrainingResult.load(path)
             earlier.check_same_training(world, agent, learning, schedule)
         except ResultFileError:
-            self.notice(f"{path} cannot be read; training again")
+            self.notice(f"{path} cannot be read; training from scratch")
             return None
         except ValueError as difference:
             self.notice(f"{path}: {difference}".split(": train ")[0])
             return None
         if not earlier.complete:
-            self.notice(f"{path}: continuing from {earlier.run_ids.size} of {schedule.runs} runs")
+            self.notice(f"{path}: resuming from {earlier.run_ids.size} of {schedule.runs} runs")
         return earlier

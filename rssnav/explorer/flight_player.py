@@ -126,7 +126,7 @@ def _name(flight: Flight) -> str:
 
 def _words(flight: Flight, step: int, episodes: int) -> str:
     if flight.learned:
-        what, end = f"Learned in <b>{episodes}</b> episodes", "flies in a circle"
+        what, end = f"Learned in <b>{episodes}</b> episodes", "ends in a cycle"
     else:
         what, end = f"Episode <b>{flight.episode}</b> of {episodes}", "is truncated"
     if flight.reached:

@@ -235,7 +235,7 @@ class Page:
             return problem(trouble)
         if maps.progress is not None:
             if self._compiles and maps.latest is None:
-                return progress_bar(None, "Compiling the tracer, on first use only")
+                return progress_bar(None, "Compiling the tracer (first use only)")
             first = maps.latest is None or not maps.progress
             what = "Tracing the reflections" if first else "Adding the diffraction"
             return progress_bar(maps.progress, what)

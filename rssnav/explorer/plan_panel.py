@@ -90,7 +90,7 @@ class PlanPanel:
     def _dropper(self) -> PlanDropper:
         limits = self._session.limits
         dropper = PlanDropper(
-            label=f"Or your own ({', '.join(ACCEPTED)})",
+            label=f"Or upload a file ({', '.join(ACCEPTED)})",
             multiple=False,
             max_file_size=f"{limits.upload_bytes // 1000}KB",
             chunk_size=2 * limits.upload_bytes,

@@ -128,7 +128,7 @@ class Tabs:
         """Open a session and show it, unless too many are open."""
         if self._n_open >= self._limits.tabs:
             frame.refuse(
-                f"{self._n_open} tabs are open, the most that this explorer serves: close one, "
+                f"{self._n_open} tabs are open, the maximum of this explorer: close one, "
                 "then reload this page"
             )
             return

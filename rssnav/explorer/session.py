@@ -222,7 +222,7 @@ class Session:
         """Start a training in the complete map, replacing the previous one."""
         traced = self.complete_map
         if traced is None:
-            self.problem = "the map is not complete yet; train when it is"
+            self.problem = "the map is not complete yet; start the training when it is"
             return
         self.stop_training()
         self.problem = ""

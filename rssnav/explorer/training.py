@@ -194,7 +194,7 @@ class LiveTraining:
             self.problem = str(error)
         except Exception:
             LOGGER.exception("the training failed")
-            self.problem = "the training failed; the server's log says why"
+            self.problem = "the training failed; see the server's log"
 
     def _learn(self) -> None:
         settings = self.settings

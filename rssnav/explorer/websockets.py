@@ -50,7 +50,7 @@ def refuse(handler: RequestHandler, count: int, what: str) -> None:
     handler.set_status(503)
     handler.set_header("Retry-After", "5")
     handler.finish(
-        f"{count} {what} are open, the most that this explorer serves: close some, then reload"
+        f"{count} {what} are open, the maximum of this explorer: close some, then reload"
     )
 
 

@@ -37,7 +37,7 @@ def data_url(figure: Figure) -> str:
 
 
 def sentence_of(survey: Survey, validation: Validation) -> str:
-    """Say in a sentence how far the tracer is off, and beside what."""
+    """Say in a sentence how far the tracer is off, compared with the best empirical model."""
     found, others = validation.tracer.space, [r.space for r in validation.rows[:-1] if r.space]
     places = f"{len(survey)} readings at {survey.n_places} places"
     places += f" from {len(survey.transmitters)} transmitters"
@@ -46,8 +46,8 @@ def sentence_of(survey: Survey, validation: Validation) -> str:
     best = min(others, key=lambda agreement: agreement.sigma_db)
     name = next(row.name for row in validation.rows if row.space is best)
     return (
-        f"{places}: traced RSS is {found.sigma_db:.1f} dB off (held out by space); the best of the "
-        f"usual models, {name}, {best.sigma_db:.1f} dB"
+        f"{places}, held out by space: sigma {found.sigma_db:.1f} dB for traced RSS, "
+        f"{best.sigma_db:.1f} dB for the best empirical model ({name})"
     )
 
 
@@ -57,8 +57,8 @@ def cautions_of(validation: Validation) -> list[str]:
     tracer = validation.tracer.space
     if tracer is not None and tracer.n_without:
         found.append(
-            f"No path reaches {tracer.n_without} of {tracer.n + tracer.n_without} readings, which "
-            "are left out of the tracer's figures but not of the others': allow more transmissions."
+            f"No path reaches {tracer.n_without} of {tracer.n + tracer.n_without} readings, "
+            "which are excluded for the tracer only; allow more transmissions."
         )
     if validation.tracer.slope < 0.5:
         found.append(
@@ -66,8 +66,8 @@ def cautions_of(validation: Validation) -> list[str]:
         )
     if validation.n_censored:
         found.append(
-            f"{validation.n_censored} readings are below the sensitivity; of them, "
-            f"{validation.n_censored_below} are traced below it. They are not in the table."
+            f"{validation.n_censored} readings are below the sensitivity and not in the table; "
+            f"traced RSS is below it for {validation.n_censored_below} of them."
         )
     return found
 

@@ -84,7 +84,7 @@ def test_changed_request_makes_the_map_again(plan, made, options, reason) -> Non
     watch = Watch()
     radio_map = watch.make(plan, made, **options)
     assert watch.parts[-1][0] == watch.parts[-1][1]
-    assert watch.notices == [f"{made} was made {reason}; computing it again"]
+    assert watch.notices == [f"{made} was made {reason}; recomputing it"]
     assert np.array_equal(RadioMap.load(made).rss_dbm, radio_map.rss_dbm)
     assert Watch().make(plan, made, **options).provenance == radio_map.provenance
 
@@ -105,7 +105,7 @@ def test_map_of_another_tracer_is_made_again(plan, made, key) -> None:
     watch = Watch()
     watch.make(plan, made)
     assert watch.notices == [
-        f"{made} was made with a different {key.replace('_', ' ')}; computing it again"
+        f"{made} was made with a different {key.replace('_', ' ')}; recomputing it"
     ]
     assert RadioMap.load(made).provenance[key] != "earlier"
 
@@ -115,7 +115,7 @@ def test_map_of_another_format_version_is_made_again(plan, made) -> None:
         file.attrs["format_version"] = 0
     watch = Watch()
     watch.make(plan, made)
-    assert watch.notices == [f"{made} is damaged or of a different version; computing it again"]
+    assert watch.notices == [f"{made} is damaged or of a different version; recomputing it"]
     assert RadioMap.load(made).plan_sha256 == plan.sha256
 
 
@@ -124,7 +124,7 @@ def test_truncated_map_is_made_again(plan, made, length) -> None:
     made.write_bytes(made.read_bytes()[:length])
     watch = Watch()
     watch.make(plan, made)
-    assert watch.notices == [f"{made} is damaged or of a different version; computing it again"]
+    assert watch.notices == [f"{made} is damaged or of a different version; recomputing it"]
     assert RadioMap.load(made).plan_sha256 == plan.sha256
 
 

@@ -73,7 +73,7 @@ def test_a_map_of_another_edition_is_made_again(tmp_path) -> None:
     one = TraceConfig(max_reflections=1, max_diffractions=0)
     new = make_map(ROOM, file, config=one)
     old = make_map(ROOM, file, config=one, edition="P.2040-1", notice=told.append)
-    assert told == [f"{file} was made with a different material edition; computing it again"]
+    assert told == [f"{file} was made with a different material edition; recomputing it"]
     assert old.provenance["material_edition"] == "P.2040-1"
     lit = np.isfinite(new.rss_dbm)
     assert 0.01 < np.abs(new.rss_dbm[lit] - old.rss_dbm[lit]).max() < 3.0

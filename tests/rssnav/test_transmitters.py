@@ -111,4 +111,4 @@ def test_maps_of_several_transmitters_are_those_of_each(tmp_path: Path) -> None:
     assert make(receive_antenna=Isotropic()).names == ("east", "west")
     assert notices == [f"{path} is up to date"]
     make()
-    assert notices[1] == f"{path} was made for a different receive antenna; computing it again"
+    assert notices[1] == f"{path} was made for a different receive antenna; recomputing it"

@@ -162,7 +162,7 @@ def report_again(
     progress: StageProgress | None = None,
     notice: Notice | None = None,
 ) -> Paper:
-    """Recompute figures, tables and report from the maps and trainings of an earlier run.
+    """Regenerate figures, tables and report from the maps and training of an earlier run.
 
     Raises
     ------

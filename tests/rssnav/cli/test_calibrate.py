@@ -86,7 +86,7 @@ def test_a_plan_that_is_no_better_is_kept(files, tmp_path) -> None:
     result = run("calibrate", plan, survey, "--transmitters", places, *QUICK, "--antenna",
                  "dipole", "-o", out)  # fmt: skip
     assert result.exit_code == 1
-    assert re.search(r"predicted no better, .* the plan is kept, \S+ is not written", result.stderr)
+    assert re.search(r"does not improve held-out readings, .*; \S+ is not written", result.stderr)
     assert not out.exists()
 
 

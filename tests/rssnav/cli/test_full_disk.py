@@ -97,5 +97,5 @@ def test_what_was_computed_is_kept_elsewhere(name, kind, files, tmp_path, monkey
     result = run(*(str(word).format(out=out, **files) for word in COMMANDS[name]))
     assert result.exit_code == 1
     (kept,) = elsewhere.glob("rssnav-*/*.h5")
-    assert f"the result is kept in {kept}" in result.stderr
+    assert f"the result was saved to {kept} instead" in result.stderr
     kind.load(kept)

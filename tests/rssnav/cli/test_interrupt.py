@@ -39,9 +39,7 @@ def test_interrupted_map_leaves_the_old_file_or_none(tmp_path) -> None:
     before = old.read_bytes()
     code, errors = interrupted_once_under_way(*LONG_MAP, "-o", old, "--force")
     assert code == 130
-    assert errors.endswith(
-        "rssnav: interrupted; files are written whole or not at all, so nothing is left half-done\n"
-    )
+    assert errors.endswith("rssnav: interrupted; no incomplete file was written\n")
     assert "Traceback" not in errors
     assert old.read_bytes() == before
     assert [file.name for file in tmp_path.iterdir()] == ["old.h5"]
@@ -59,8 +57,8 @@ def test_interrupted_training_keeps_its_finished_runs(tmp_path) -> None:
     kept = TrainingResult.load(result).run_ids.size
     assert 0 < kept < 100_000
     assert errors.splitlines()[-1] == (
-        f"rssnav: interrupted; {kept} of 100000 runs are finished and kept in {result}; the same "
-        "command continues from there"
+        f"rssnav: interrupted; {kept} of 100000 runs are finished and saved to {result}; run "
+        "the same command again to resume"
     )
 
 

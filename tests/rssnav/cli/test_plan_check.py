@@ -38,7 +38,7 @@ def test_what_concerns_a_map_is_apart_from_what_concerns_a_flight(tmp_path) -> N
         line for line in closet.splitlines(keepends=True) if not line.startswith("start")
     )
     text = done("plan", "check", room_file(tmp_path, without))
-    assert "not checked: the plan has no start" in text
+    assert "not checked, because the plan has no start" in text
     assert text.endswith("is valid\n")
     report = json.loads(done("plan", "check", room_file(tmp_path, without), "--json"))
     assert report["start_m"] is None
@@ -89,7 +89,7 @@ def test_fix_mends_in_place_and_keeps_what_was(tmp_path) -> None:
     assert path.read_text().startswith("# Repaired:")
     assert floorplans.load(path) == floorplans.load(path)
     again = run("plan", "check", path, "--fix")
-    assert "nothing to repair" in again.stderr
+    assert "no safe repairs found" in again.stderr
 
 
 def test_fix_into_another_file_leaves_the_plan_alone(tmp_path) -> None:

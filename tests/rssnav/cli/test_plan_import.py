@@ -39,7 +39,7 @@ def test_a_plan_is_written_and_told(drawing: Path, tmp_path: Path):
     assert ["WALLS", "1", "walls"] in rows
     assert any(row[:4] == ["table", "1", "left", "out"] for row in rows)
     assert any(row[:2] == ["height_m", "3"] for row in rows)
-    assert text.endswith(f"wrote {output}; see it with: rssnav plan show {output}\n")
+    assert text.endswith(f"wrote {output}; view it with: rssnav plan show {output}\n")
     assert not ESCAPE.search(text)
 
 
