@@ -17,7 +17,7 @@ from raytrace.memory import memory_limit
 from raytrace.radio.antennas import Antenna
 from raytrace.radio.materials import Slab
 from raytrace.radio.table_slopes import SlabsAt, table_slopes
-from raytrace.radio.tables import field_tables
+from raytrace.radio.tables import both_tables, field_tables
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.paths import Paths
 from raytrace.results.step_lanes import gains_of
@@ -137,7 +137,8 @@ class TracedPoints:
             (n, n_values) of the powers with respect to the values.
         """
         frequency_hz = self.transmitter.frequency_hz
-        slopes, value_of = table_slopes(slabs_at, values, frequency_hz, through_walls=True)
+        of_slabs = both_tables(slabs_at(values), frequency_hz)
+        slopes, value_of = table_slopes(slabs_at, values, frequency_hz, of_slabs)
         tables = field_tables(
             self.transmitter,
             slabs_at(values),

@@ -26,22 +26,19 @@ from raytrace.kernels.lanes import (
     real_of,
     store,
     where,
-    where_complex,
 )
 from raytrace.kernels.step_gains import (
     DIFFRACTED,
+    Diffraction,
     Dyad,
     Pair,
     StepLanes,
-    after_wall,
-    after_wedge,
+    at_wall,
     chosen,
-    dyad_of,
+    diffraction_of,
     into_edge,
-    launched,
-    out_of_edge,
+    propagated,
     received,
-    wedge_terms_of,
 )
 from raytrace.kernels.steps import (
     ACROSS,
@@ -94,7 +91,7 @@ class PowerSums(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Working arrays: fields (most + 1, 4, 8) before the interactions, and a row (8,)."""
+    """Working arrays: fields (most, 4, 8) before the interactions, and a row (8,)."""
 
     fields: Floats
     row: Floats
@@ -107,15 +104,6 @@ class Work(NamedTuple):
     weight: Floats
     i: int
     w: int
-
-
-@jit(inline=True)
-def store_pair(rows: Floats, field: Pair) -> None:
-    """Write fields to four rows."""
-    store(rows[0], real_of(field.v))
-    store(rows[1], imag_of(field.v))
-    store(rows[2], real_of(field.h))
-    store(rows[3], imag_of(field.h))
 
 
 @jit(inline=True)
@@ -167,28 +155,6 @@ def add_slopes(
             if row[j] != 0.0:
                 slab = int(lane(at[0], j))
                 sums.slopes[work.receiver[work.i + j], slab, slot] += row[j]
-
-
-@jit(inline=True, fast=True)
-def before_wall(tables: FieldTables, code: Lanes, frame: Floats, i: int, backward: Pair) -> Pair:
-    """Carry amplitudes backwards through a reflection or a transmission: the transpose."""
-    a, b = load(frame[ALONG, i:]), load(frame[ACROSS, i:])
-    cosine = load(frame[COSINE, i:])
-    v, h = backward
-    reflects, transmits = (code > 0.0) & (code < DIFFRACTED), code < 0.0
-    if any_of(reflects):
-        slab = where(reflects, code - 1.0, 0.0)
-        tm, mix = slab_lookup(tables.reflection, tables.slab_rows, slab, cosine)
-        t = (backward.v * a - backward.h * b) * mix
-        v = where_complex(reflects, t * a - tm * backward.v, v)
-        h = where_complex(reflects, tm * backward.h + t * b, h)
-    if any_of(transmits):
-        slab = where(transmits, -1.0 - code, 0.0)
-        tm, mix = slab_lookup(tables.transmission, tables.slab_rows, slab, cosine)
-        t = (backward.v * a + backward.h * b) * mix
-        v = where_complex(transmits, tm * backward.v + t * a, v)
-        h = where_complex(transmits, tm * backward.h + t * b, h)
-    return Pair(v, h)
 
 
 @jit(inline=True, fast=True)
@@ -249,7 +215,7 @@ def add_wedge(
     slopes: TableSlopes,
     rows: int,
     lanes: StepLanes,
-    terms: tuple[ComplexLanes, ComplexLanes, ComplexLanes],
+    diffraction: Diffraction,
     work: Work,
     fields: tuple[Pair, Pair, Mask],
     row: Floats,
@@ -257,7 +223,7 @@ def add_wedge(
     """Add what diffractions contribute; `fields` are along the edges and across them."""
     x, y, mask = fields
     wedge, face, w = lanes.wedge, lanes.face, work.w
-    incident, at_n, at_o = terms
+    at_o, at_n = diffraction.at_o, diffraction.at_n
     cosine, squared = load(wedge[COSINE_O, w:]), load(wedge[SQUARED_O, w:])
     at = load(face[0, w:]), cosine
     turn = cosine, squared, load(wedge[MIXED_O, w:])
@@ -273,7 +239,7 @@ def add_wedge(
     shadow, mixed = load(wedge[SHADOWS, w:]), load(wedge[MIXED_SHADOW, w:])
     has_shadow = mask & (shadow > 0.0)
     if any_of(has_shadow):
-        less = incident * (shadow * -1.0)
+        less = diffraction.incident * (shadow * -1.0)
         both = y.v * x.v * (1.0 - squared) + y.h * x.h * squared
         both = both + (y.v * x.h + y.h * x.v) * mixed
         sensitivity = (y.v * x.v + y.h * x.h) * less, both * less * (1.0 - cosine * cosine)
@@ -295,23 +261,6 @@ def behind_wedge(wedge: Floats, w: int, backward: Pair) -> Pair:
     """Carry amplitudes of V and H back to those along an edge and across it: the transpose."""
     a, c = load(wedge[OUT_ALONG, w:]), load(wedge[OUT_ACROSS, w:])
     return Pair(backward.v * a + backward.h * c, backward.h * a - backward.v * c)
-
-
-@jit(inline=True, fast=True)
-def forward(tables: FieldTables, lanes: StepLanes, i: int, w: int, fields: Floats) -> Pair:
-    """Fields at the ends of eight paths; `fields` is filled with those before each interaction."""
-    field = launched(tables, lanes.ends, i)
-    for k in range(len(lanes.code)):
-        store_pair(fields[k], field)
-        code = load(lanes.code[k, i:])
-        is_edge = code >= DIFFRACTED
-        if any_of(is_edge):
-            dyad = dyad_of(tables, lanes, w, wedge_terms_of(tables, lanes.wedge, w))
-            after = after_wedge(dyad, into_edge(lanes.wedge, w, field))
-            field = chosen(is_edge, out_of_edge(lanes.wedge, w, after), field)
-        if any_of((code < DIFFRACTED) & ((code > 0.0) | (code < 0.0))):
-            field = after_wall(tables, code, lanes.frame[k], i, field)
-    return field
 
 
 @jit(inline=True, fast=True)
@@ -357,7 +306,8 @@ def add_power_slopes(
             break
         w = i - undiffracted
         work = Work(receiver, weight, i, w)
-        field = forward(tables, lanes, i, w, scratch.fields)
+        diffraction = diffraction_of(tables, lanes, w)
+        field = propagated(tables, lanes, i, w, diffraction, scratch.fields)
         v = received(tables, lanes.ends, i, Pair(one, zero))
         h = received(tables, lanes.ends, i, Pair(zero, one))
         amplitude = v * field.v + h * field.h
@@ -374,11 +324,11 @@ def add_power_slopes(
             is_edge = code >= DIFFRACTED
             if any_of((code < DIFFRACTED) & ((code > 0.0) | (code < 0.0))):
                 add_wall(sums, slopes, rows, code, lanes.frame[k], work, (x, y), row)
-                y = before_wall(tables, code, lanes.frame[k], i, y)
+                y = at_wall(tables, code, lanes.frame[k], i, y, -1.0)
             if any_of(is_edge):
-                terms = wedge_terms_of(tables, lanes.wedge, w)
                 at_edge = into_edge(lanes.wedge, w, x)
                 behind = behind_wedge(lanes.wedge, w, y)
-                add_wedge(sums, slopes, rows, lanes, terms, work, (at_edge, behind, is_edge), row)
-                before = before_wedge(lanes.wedge, w, dyad_of(tables, lanes, w, terms), behind)
+                fields = at_edge, behind, is_edge
+                add_wedge(sums, slopes, rows, lanes, diffraction, work, fields, row)
+                before = before_wedge(lanes.wedge, w, diffraction.dyad, behind)
                 y = chosen(is_edge, before, y)

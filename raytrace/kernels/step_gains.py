@@ -101,39 +101,58 @@ class Dyad(NamedTuple):
     across: ComplexLanes
 
 
+class Diffraction(NamedTuple):
+    """The wedges of eight paths.
+
+    Attributes
+    ----------
+    incident, at_n, at_o
+        Coefficients of the incident field, and of reflections at the n-face and the o-face, which
+        no material changes.
+    dyad
+        What they make of a field.
+    """
+
+    incident: ComplexLanes
+    at_n: ComplexLanes
+    at_o: ComplexLanes
+    dyad: Dyad
+
+
 @jit(inline=True, fast=True)
-def after_wall(tables: FieldTables, code: Lanes, frame: Floats, i: int, field: Pair) -> Pair:
-    """Fields behind a reflection or a transmission; unchanged where there is neither."""
+def at_wall(
+    tables: FieldTables, code: Lanes, frame: Floats, i: int, field: Pair, way: float
+) -> Pair:
+    """Carry eight paths through a reflection or a transmission; the others stay as they are.
+
+    Parameters
+    ----------
+    tables
+        The materials.
+    code, frame, i
+        The interactions, see `StepLanes`; of the paths from i on.
+    field, way
+        Fields before it to those behind it for 1; for -1 amplitudes behind it to those before it,
+        by the transpose, which is that of the opposite `ACROSS` for a reflection, and the same for
+        a transmission.
+    """
     a, b = load(frame[ALONG, i:]), load(frame[ACROSS, i:])
     cosine = load(frame[COSINE, i:])
-    along = field.v * a + field.h * b
     v, h = field
     reflects, transmits = (code > 0.0) & (code < DIFFRACTED), code < 0.0
     if any_of(reflects):
-        slab = where(reflects, code - 1.0, 0.0)
+        slab, across = where(reflects, code - 1.0, 0.0), b * way
         tm, mix = slab_lookup(tables.reflection, tables.slab_rows, slab, cosine)
-        t = along * mix
+        t = (field.v * a + field.h * across) * mix
         v = where_complex(reflects, t * a - tm * field.v, v)
-        h = where_complex(reflects, tm * field.h - t * b, h)
+        h = where_complex(reflects, tm * field.h - t * across, h)
     if any_of(transmits):
         slab = where(transmits, -1.0 - code, 0.0)
         tm, mix = slab_lookup(tables.transmission, tables.slab_rows, slab, cosine)
-        t = along * mix
+        t = (field.v * a + field.h * b) * mix
         v = where_complex(transmits, tm * field.v + t * a, v)
         h = where_complex(transmits, tm * field.h + t * b, h)
     return Pair(v, h)
-
-
-@jit(inline=True, fast=True)
-def wedge_terms_of(
-    tables: FieldTables, wedge: Floats, i: int
-) -> tuple[ComplexLanes, ComplexLanes, ComplexLanes]:
-    """Coefficients of the incident field, and of reflections at the n-face and the o-face."""
-    scale = load(wedge[ROOT_2KL, i:]) * (1.0 / math.sqrt(tables.wavelength))
-    incident = wedge_term_of(tables, wedge, i, 0, scale)
-    incident = incident + wedge_term_of(tables, wedge, i, 1, scale)
-    at_n = wedge_term_of(tables, wedge, i, 2, scale)
-    return incident, at_n, wedge_term_of(tables, wedge, i, 3, scale)
 
 
 @jit(inline=True, fast=True)
@@ -222,17 +241,69 @@ def received(tables: FieldTables, ends: Floats, i: int, field: Pair) -> ComplexL
 
 
 @jit(inline=True, fast=True)
-def propagated(tables: FieldTables, lanes: StepLanes, i: int, w: int, field: Pair) -> Pair:
-    """Fields at the ends of the eight paths from i on, w their first diffraction or below 0."""
+def no_wedge() -> Diffraction:
+    """What stands for the wedges of paths without a diffraction."""
+    zero = complex_of(lanes_of(0.0), 0.0)
+    return Diffraction(zero, zero, zero, Dyad(zero, zero, zero, zero))
+
+
+@jit(inline=True, fast=True)
+def diffraction_of(tables: FieldTables, lanes: StepLanes, w: int) -> Diffraction:
+    """What diffracts eight paths, the first of which is diffracted path w; w < 0 for none."""
+    if w < 0:
+        return no_wedge()
+    scale = load(lanes.wedge[ROOT_2KL, w:]) * (1.0 / math.sqrt(tables.wavelength))
+    incident = wedge_term_of(tables, lanes.wedge, w, 0, scale)
+    incident = incident + wedge_term_of(tables, lanes.wedge, w, 1, scale)
+    at_n = wedge_term_of(tables, lanes.wedge, w, 2, scale)
+    at_o = wedge_term_of(tables, lanes.wedge, w, 3, scale)
+    return Diffraction(incident, at_n, at_o, dyad_of(tables, lanes, w, (incident, at_n, at_o)))
+
+
+@jit(inline=True, fast=True)
+def propagated(
+    tables: FieldTables,
+    lanes: StepLanes,
+    i: int,
+    w: int,
+    diffraction: Diffraction,
+    fields: Floats,
+) -> Pair:
+    """Fields at the ends of eight paths.
+
+    Parameters
+    ----------
+    tables, lanes
+        Materials, antennas and paths.
+    i, w
+        The first of the eight, and its number among those with a diffraction; below 0 for none.
+    diffraction
+        Of the eight.
+    fields
+        (most, 4, 8) is filled with the fields before each interaction; (0, 4, 8) if these are not
+        wanted.
+    """
+    field = launched(tables, lanes.ends, i)
     for k in range(len(lanes.code)):
+        if k < len(fields):
+            store_pair(fields[k], field)
         code = load(lanes.code[k, i:])
-        if any_of(code >= DIFFRACTED):
-            dyad = dyad_of(tables, lanes, w, wedge_terms_of(tables, lanes.wedge, w))
-            after = after_wedge(dyad, into_edge(lanes.wedge, w, field))
-            field = chosen(code >= DIFFRACTED, out_of_edge(lanes.wedge, w, after), field)
+        is_edge = code >= DIFFRACTED
+        if any_of(is_edge):
+            after = after_wedge(diffraction.dyad, into_edge(lanes.wedge, w, field))
+            field = chosen(is_edge, out_of_edge(lanes.wedge, w, after), field)
         if any_of((code < DIFFRACTED) & ((code > 0.0) | (code < 0.0))):
-            field = after_wall(tables, code, lanes.frame[k], i, field)
+            field = at_wall(tables, code, lanes.frame[k], i, field, 1.0)
     return field
+
+
+@jit(inline=True)
+def store_pair(rows: Floats, field: Pair) -> None:
+    """Write fields to four rows."""
+    store(rows[0], real_of(field.v))
+    store(rows[1], imag_of(field.v))
+    store(rows[2], real_of(field.h))
+    store(rows[3], imag_of(field.h))
 
 
 @jit(inline=True, fast=True)
@@ -256,13 +327,13 @@ def scale_of(tables: FieldTables, lanes: StepLanes, i: int, w: int) -> ComplexLa
 
 @jit(allocates=False, fast=True)
 def write_gains(
-    tables: FieldTables, lanes: StepLanes, first: int, last: int, real: Floats, imag: Floats
+    tables: FieldTables, lanes: StepLanes, fields: Floats, real: Floats, imag: Floats
 ) -> None:
-    """Write the gains of the paths from first to last, both multiples of eight, to two arrays."""
+    """Write the gains of all paths to two arrays (n,); `fields` is (0, 4, 8)."""
     undiffracted = lanes.code.shape[1] - lanes.wedge.shape[1]
-    for i in range(first, last, WIDTH):
+    for i in range(0, lanes.code.shape[1], WIDTH):
         w = i - undiffracted
-        field = propagated(tables, lanes, i, w, launched(tables, lanes.ends, i))
+        field = propagated(tables, lanes, i, w, diffraction_of(tables, lanes, w), fields)
         gain = received(tables, lanes.ends, i, field) * scale_of(tables, lanes, i, w)
         store(real[i:], real_of(gain))
         store(imag[i:], imag_of(gain))

@@ -9,19 +9,19 @@ import numpy as np
 from raytrace.arrays import Floats, Ints
 from raytrace.kernels.step_derivatives import TableSlopes
 from raytrace.radio.materials import Slab
-from raytrace.radio.tables import SLAB_TABLE_STEPS, both_tables
+from raytrace.radio.tables import both_tables
 
-STEP = 1e-4
-"""Step of the central differences; their error is of the second order in it."""
+STEP = 1e-7
+"""Step of the differences, whose error is of the first order in it: rounding costs as much."""
 
 SlabsAt = Callable[[Floats], Sequence[Slab]]
 """The slabs that given values of the properties make."""
 
 
 def table_slopes(
-    slabs_at: SlabsAt, values: Floats, frequency_hz: float, *, through_walls: bool
+    slabs_at: SlabsAt, values: Floats, frequency_hz: float, tables: tuple[Floats, Floats]
 ) -> tuple[TableSlopes, Ints]:
-    """Differentiate the tables of slabs, by central differences.
+    """Differentiate the tables of slabs.
 
     Parameters
     ----------
@@ -32,8 +32,8 @@ def table_slopes(
         (n_values,) where to differentiate.
     frequency_hz
         Frequency [Hz].
-    through_walls
-        Whether transmission is used.
+    tables
+        Reflection and transmission there, as `both_tables` makes them of the slabs.
 
     Returns
     -------
@@ -43,36 +43,26 @@ def table_slopes(
         (n_slabs, n_slots) which value each slot belongs to; -1 for slots that a slab does not use.
     """
     slabs = slabs_at(values)
-    users = [_users(slabs_at, values, k, slabs) for k in range(len(values))]
+    moved = [slabs_at(_moved(values, k)) for k in range(len(values))]
+    users = [[s for s, slab in enumerate(slabs) if other[s] != slab] for other in moved]
     slots = [[k for k, of_value in enumerate(users) if s in of_value] for s in range(len(slabs))]
     n_slots = max(1, *map(len, slots))
     value_of = np.full((len(slabs), n_slots), -1, dtype=np.int64)
-    shape = n_slots, len(slabs), SLAB_TABLE_STEPS + 2, 4
-    reflection = np.zeros(shape)
-    transmission = np.zeros(shape if through_walls else (n_slots, 0, shape[2], 4))
-    for k, of_value in enumerate(users):
-        for sign in (1.0, -1.0) if of_value else ():
-            changed = slabs_at(_moved(values, k, sign))
-            tables = both_tables([changed[s] for s in of_value], frequency_hz)
-            for s, *of_slab in zip(of_value, *tables, strict=True):
-                slot, scale = slots[s].index(k), sign / (2.0 * STEP)
-                reflection[slot, s] += scale * of_slab[0]
-                if through_walls:
-                    transmission[slot, s] += scale * of_slab[1]
     for s, of_slab in enumerate(slots):
         value_of[s, : len(of_slab)] = of_slab
-    return TableSlopes(
-        reflection.reshape(n_slots, -1, 4), transmission.reshape(n_slots, -1, 4)
-    ), value_of
+    slopes = np.zeros((2, n_slots, *tables[0].shape))
+    for k, of_value in enumerate(users):
+        if not of_value:
+            continue
+        changed = both_tables([moved[k][s] for s in of_value], frequency_hz)
+        for kind in (0, 1):
+            for s, table in zip(of_value, changed[kind], strict=True):
+                slopes[kind, slots[s].index(k), s] = (table - tables[kind][s]) / STEP
+    reflection, transmission = slopes.reshape(2, n_slots, -1, 4)
+    return TableSlopes(reflection, transmission), value_of
 
 
-def _moved(values: Floats, k: int, steps: float) -> Floats:
+def _moved(values: Floats, k: int) -> Floats:
     moved = values.copy()
-    moved[k] += steps * STEP
+    moved[k] += STEP
     return moved
-
-
-def _users(slabs_at: SlabsAt, values: Floats, k: int, slabs: Sequence[Slab]) -> list[int]:
-    """Numbers of the slabs that depend on value k."""
-    changed = slabs_at(_moved(values, k, 1.0))
-    return [s for s, slab in enumerate(slabs) if changed[s] != slab]

@@ -62,7 +62,7 @@ def gains_of(tables: FieldTables, steps: Steps) -> Complexes:
     """Compute gains (n,), both antennas included, from steps."""
     lanes, path = step_lanes(steps)
     real, imag = np.zeros(len(path)), np.zeros(len(path))
-    write_gains(tables, lanes, 0, len(path), real, imag)
+    write_gains(tables, lanes, np.empty((0, 4, WIDTH)), real, imag)
     gains = np.zeros(len(steps.kind), dtype=np.complex128)
     is_real = path >= 0
     gains[path[is_real]] = (real + 1j * imag)[is_real]

@@ -78,7 +78,7 @@ class KeptPaths:
     def powers(self, tables: FieldTables) -> Floats:
         """Sum the powers of the paths at each point (n,) [fraction of the transmitted]."""
         real, imag = np.empty(len(self.receiver)), np.empty(len(self.receiver))
-        write_gains(tables, self.lanes, 0, len(self.receiver), real, imag)
+        write_gains(tables, self.lanes, np.empty((0, 4, WIDTH)), real, imag)
         power = np.minimum(real * real + imag * imag, 1.0)
         sums = np.bincount(self.receiver, self.weight * power, self.n_points)
         return sums.astype(np.float64)
@@ -181,20 +181,25 @@ def _check_memory(guard: Guard, n_paths: int) -> None:
 def _chosen(
     records: list[KeptRecord], n_points: int, max_left_out: float
 ) -> tuple[list[Ints], Floats]:
-    """Choose the strongest paths of each point; return rows of each record, and what is left."""
+    """Choose the strongest paths of each point; return rows of each record, and what is left.
+
+    All paths below the mean of what may be left out are left out; only the others are sorted.
+    """
     receiver = np.concatenate([record.receiver for record in records])
     power = np.concatenate([record.power for record in records])
-    order = np.lexsort([power, receiver])
-    running = np.cumsum(power[order])
-    begin = np.searchsorted(receiver[order], np.arange(n_points + 1))
-    total = np.bincount(receiver, power, n_points)
-    before = np.concatenate([[0.0], running])[begin[:-1]]
-    weaker = running - before[receiver[order]]
-    is_kept = np.empty(len(power), dtype=bool)
-    is_kept[order] = weaker > max_left_out * total[receiver[order]]
-    if max_left_out == 0.0:
-        is_kept[:] = True
-    lost = np.bincount(receiver, np.where(is_kept, 0.0, power), n_points)
+    total, count = np.bincount(receiver, power, n_points), np.bincount(receiver, None, n_points)
+    least = max_left_out * total / np.maximum(count, 1)
+    is_kept = power >= least[receiver]
+    lost = np.bincount(receiver[~is_kept], power[~is_kept], n_points)
+    if max_left_out > 0.0:
+        strong = np.flatnonzero(is_kept)
+        order = strong[np.lexsort([power[strong], receiver[strong]])]
+        of = receiver[order]
+        running = np.cumsum(power[order])
+        before = np.concatenate([[0.0], running])[np.searchsorted(of, np.arange(n_points))]
+        weaker = running - before[of] + lost[of]
+        is_kept[order] = weaker > max_left_out * total[of]
+        lost = np.bincount(receiver[~is_kept], power[~is_kept], n_points)
     ends = np.cumsum([len(record.receiver) for record in records])[:-1]
     rows = [np.flatnonzero(part) for part in np.split(is_kept, ends)]
     return rows, lost / np.where(total > 0.0, total, 1.0)

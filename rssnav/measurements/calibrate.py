@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,12 +18,18 @@ from raytrace.arrays import Bools, Floats, Ints
 from rssnav.measurements.agreement import Agreement
 from rssnav.measurements.calibration import (
     Calibrated,
+    Levels,
     TracedSurvey,
     fit_what_is_told,
     residuals_db,
 )
 from rssnav.measurements.hold_out import SQUARE_M, Fold, by_space, by_transmitter
-from rssnav.measurements.material_values import MaterialValue, material_values, plan_with
+from rssnav.measurements.material_values import (
+    MaterialValue,
+    material_values,
+    plan_values,
+    plan_with,
+)
 from rssnav.measurements.predictors import OffsetPer, offset_groups
 from rssnav.measurements.survey import Survey, SurveyError
 from rssnav.measurements.traced import TraceSettings
@@ -180,7 +186,8 @@ def calibrate(
     of = material_values(scene.slabs, settings.frequency_hz, materials, measured)
     traced = TracedSurvey.of(scene, survey, settings, lambda done, _: steps.reached(done))
     groups = offset_groups(survey, offsets)
-    found = fit_what_is_told(traced, of, groups)
+    work = _Work(traced, of, groups, traced.levels_db(of, plan_values(of), slopes=True))
+    found = work.fitted(np.ones(len(survey), dtype=bool))
     steps.advance()
     if not found.told:
         raise SurveyError(
@@ -188,9 +195,9 @@ def calibrate(
             + "; ".join(f"{t.value.material}, {t.value.kind}" for t in found.not_told),
             survey.path,
         )
-    space = _change(traced, of, groups, folds, steps)
-    transmitter = _change(traced, of, groups, others, steps) if others else None
-    curve = _curve(traced, of, groups)
+    space = _change(work, folds, steps)
+    transmitter = _change(work, others, steps) if others else None
+    curve = _curve(work)
     steps.advance()
     return Calibration(
         plan_with(plan, scene.slabs, found.told, found.fit.values, settings.frequency_hz),
@@ -217,78 +224,83 @@ class _Steps:
         self.reached(self._done + 1)
 
 
-def _predicted(
-    traced: TracedSurvey, of: Sequence[MaterialValue], values: Floats, groups: Ints, fit: Bools
-) -> Floats:
-    """Predict all readings (n,) [dBm] with offsets that were fitted to some of them."""
-    level, slopes = traced.levels_db(of, values, slopes=False)
-    part = traced.survey.rows(fit)
-    *_, offset = residuals_db(part, groups[fit], level[fit], slopes[fit])
-    known = np.full(int(groups.max(initial=0)) + 1, np.mean(offset))
-    known[groups[fit]] = offset
-    return level + known[groups]
+class _Work(NamedTuple):
+    """What all fits share.
+
+    Attributes
+    ----------
+    traced, of
+        The readings, and the properties that may be fitted.
+    groups
+        (n,) which offset each reading has.
+    at_plan
+        All readings predicted with the plan's values.
+    """
+
+    traced: TracedSurvey
+    of: tuple[MaterialValue, ...]
+    groups: Ints
+    at_plan: Levels
+
+    def fitted(self, fit: Bools) -> Calibrated:
+        """Calibrate with some of the readings, from the plan's values on."""
+        traced = self.traced.rows(fit)
+        return fit_what_is_told(traced, self.of, self.groups[fit], self.at_plan.rows(fit))
+
+    def predicted(self, fit: Bools) -> tuple[Floats, Floats]:
+        """Predict all readings (n,) [dBm] before and after a calibration with some of them.
+
+        The offset is fitted to the same readings.
+        """
+        found = self.fitted(fit)
+        after = self.traced.levels_db(found.told, found.fit.values, slopes=False)
+        return self._with_offset(self.at_plan, fit), self._with_offset(after, fit)
+
+    def _with_offset(self, levels: Levels, fit: Bools) -> Floats:
+        groups = self.groups
+        *_, offset = residuals_db(self.traced.survey.rows(fit), groups[fit], levels.rows(fit))
+        known = np.full(int(groups.max(initial=0)) + 1, np.mean(offset))
+        known[groups[fit]] = offset
+        return levels.level + known[groups]
 
 
-def _change(
-    traced: TracedSurvey,
-    of: Sequence[MaterialValue],
-    groups: Ints,
-    folds: tuple[Fold, ...],
-    steps: _Steps,
-) -> Change:
+def _change(work: _Work, folds: tuple[Fold, ...], steps: _Steps) -> Change:
     """Repeat a calibration without the readings of each fold, and predict these."""
-    survey = traced.survey
-    before, after = np.full((2, len(survey)), -np.inf)
+    survey = work.traced.survey
+    both = np.full((2, len(survey)), -np.inf)
     for fold in folds:
-        found = fit_what_is_told(traced.rows(fold.fit), of, groups[fold.fit])
-        plan_values = np.array([value.prior for value in found.told])
-        for target, values in ((before, plan_values), (after, found.fit.values)):
-            predicted = _predicted(traced, found.told, values, groups, fold.fit)
-            target[fold.test] = predicted[fold.test]
+        both[:, fold.test] = np.array(work.predicted(fold.fit))[:, fold.test]
         steps.advance()
     tested = np.logical_or.reduce([fold.test for fold in folds])
-    found_both = [Agreement.of(survey.rss_dbm, p, tested) for p in (before, after)]
-    if found_both[0] is None or found_both[1] is None:
+    before, after = (Agreement.of(survey.rss_dbm, predicted, tested) for predicted in both)
+    if before is None or after is None:
         raise SurveyError("no path reaches any reading: allow more transmissions", survey.path)
-    return Change(found_both[0], found_both[1])
+    return Change(before, after)
 
 
-def _curve(
-    traced: TracedSurvey, of: Sequence[MaterialValue], groups: Ints
-) -> tuple[CurvePoint, ...]:
+def _curve(work: _Work) -> tuple[CurvePoint, ...]:
     """Calibrate with the readings at a few random places, and predict those at all others."""
-    survey, random = traced.survey, np.random.default_rng(0)
+    survey, random = work.traced.survey, np.random.default_rng(0)
     _, place = np.unique(survey.points[:, :2].round(1), axis=0, return_inverse=True)
     n_places = int(place.max()) + 1
     points: list[CurvePoint] = []
     for n in CURVE_PLACES:
         if 2 * n > n_places:
             break
-        squares = np.array([_draw(traced, of, groups, place, random.permutation(n_places)[:n])
+        squares = np.array([_draw(work, place, random.permutation(n_places)[:n])
                             for _ in range(CURVE_DRAWS)])  # fmt: skip
         before, after = np.sqrt(squares.mean(axis=0))
         points.append(CurvePoint(n, float(before), float(after)))
     return tuple(points)
 
 
-def _draw(
-    traced: TracedSurvey,
-    of: Sequence[MaterialValue],
-    groups: Ints,
-    place: Ints,
-    chosen: Ints,
-) -> tuple[float, float]:
+def _draw(work: _Work, place: Ints, chosen: Ints) -> list[float]:
     """Mean squares of residuals [dB^2] at other places, with the plan's and fitted materials."""
-    survey = traced.survey
+    survey = work.traced.survey
     fit = np.isin(place, chosen) & ~survey.is_censored
     test = ~np.isin(place, chosen) & ~survey.is_censored
-    found = fit_what_is_told(traced.rows(fit), of, groups[fit])
-    squares: list[float] = []
-    for values in (np.array([value.prior for value in found.told]), found.fit.values):
-        predicted = _predicted(traced, found.told, values, groups, fit)
-        agreement = Agreement.of(survey.rss_dbm, predicted, test)
-        squares.append(np.inf if agreement is None else agreement.sigma_db**2)
-    return squares[0], squares[1]
+    both = (Agreement.of(survey.rss_dbm, p, test) for p in work.predicted(fit))
+    return [np.inf if agreement is None else agreement.sigma_db**2 for agreement in both]
 
 
 def _doubts(found: Calibrated) -> tuple[str, ...]:

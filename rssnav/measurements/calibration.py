@@ -21,7 +21,7 @@ from raytrace.radio.materials import Slab
 from raytrace.radio.table_slopes import table_slopes
 from raytrace.radio.tables import both_tables, field_tables
 from raytrace.threads import n_threads
-from rssnav.measurements.material_values import MaterialValue, slabs_with
+from rssnav.measurements.material_values import MaterialValue, plan_values, slabs_with
 from rssnav.measurements.survey import Survey
 from rssnav.measurements.traced import TraceSettings
 from rssnav.progress import Progress
@@ -60,6 +60,29 @@ class Part(NamedTuple):
     traced: TracedPoints
     rows: Ints
     tables: FieldTables
+
+
+class Levels(NamedTuple):
+    """Readings as they are predicted without offsets.
+
+    Attributes
+    ----------
+    level
+        (n,) [dBm]; -inf without a path.
+    slopes
+        (n, n_values) derivatives with respect to properties of materials [dB]; 0 without a path.
+    """
+
+    level: Floats
+    slopes: Floats
+
+    def rows(self, which: Bools) -> Levels:
+        """Return some of the readings."""
+        return Levels(self.level[which], self.slopes[which])
+
+    def of_values(self, numbers: Sequence[int]) -> Levels:
+        """Return the derivatives with respect to some of the properties."""
+        return Levels(self.level, self.slopes[:, list(numbers)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,9 +151,7 @@ class TracedSurvey:
         )
         return replace(self, survey=self.survey.rows(which), parts=tuple(parts))
 
-    def levels_db(
-        self, of: Sequence[MaterialValue], values: Floats, *, slopes: bool
-    ) -> tuple[Floats, Floats]:
+    def levels_db(self, of: Sequence[MaterialValue], values: Floats, *, slopes: bool) -> Levels:
         """Predict all readings without offsets.
 
         Parameters
@@ -138,29 +159,20 @@ class TracedSurvey:
         of, values
             Properties of materials, and what they are.
         slopes
-            Whether derivatives are computed.
-
-        Returns
-        -------
-        levels
-            (n,) [dBm]; -inf without a path.
-        slopes
-            (n, n_values) derivatives [dB]; 0 without a path, and where they are not computed.
+            Whether derivatives are computed; otherwise they are 0.
         """
         frequency_hz = self.settings.frequency_hz
 
         def slabs_at(point: Floats) -> list[Slab]:
             return slabs_with(self.slabs, of, point, frequency_hz)
 
-        reflection, transmission = both_tables(slabs_at(values), frequency_hz)
-        reflection, transmission = reflection.reshape(-1, 4), transmission.reshape(-1, 4)
+        of_slabs = both_tables(slabs_at(values), frequency_hz)
+        reflection, transmission = (table.reshape(-1, 4) for table in of_slabs)
         power = np.zeros(len(self.survey))
         change = np.zeros((len(self.survey), len(values)))
         slope_tables, value_of = None, np.empty((0, 0), dtype=np.int64)
         if slopes:
-            slope_tables, value_of = table_slopes(
-                slabs_at, values, frequency_hz, through_walls=True
-            )
+            slope_tables, value_of = table_slopes(slabs_at, values, frequency_hz, of_slabs)
 
         def evaluated(part: Part) -> tuple[Floats, Floats]:
             kept = part.traced.kept
@@ -178,7 +190,7 @@ class TracedSurvey:
         level = np.full(len(power), -np.inf)
         level[heard] = self.survey.power_dbm[heard] + PER_DB * np.log(power[heard])
         change[heard] *= PER_DB / power[heard, None]
-        return level, change
+        return Levels(level, change)
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,9 +215,7 @@ class Fit:
     evaluations: int
 
 
-def residuals_db(
-    survey: Survey, groups: Ints, level: Floats, slopes: Floats
-) -> tuple[Floats, Floats, Floats]:
+def residuals_db(survey: Survey, groups: Ints, predicted: Levels) -> tuple[Floats, Floats, Floats]:
     """Measured minus predicted with the best offset of each group, and its derivatives.
 
     A censored reading has the residual 0 where it is predicted below the sensitivity. A reading
@@ -216,6 +226,7 @@ def residuals_db(
     residuals, slopes, offsets
         (n,) [dB], (n, n_values) [dB], and (n,) the offset of each reading's group [dB].
     """
+    level, slopes = predicted
     n_groups = int(groups.max(initial=0)) + 1
     heard = np.isfinite(level)
     used = heard & ~survey.is_censored
@@ -232,7 +243,11 @@ def residuals_db(
 
 
 def fit_values(
-    traced: TracedSurvey, of: Sequence[MaterialValue], groups: Ints, start: Floats
+    traced: TracedSurvey,
+    of: Sequence[MaterialValue],
+    groups: Ints,
+    start: Floats,
+    at_start: Levels | None = None,
 ) -> Fit:
     """Fit properties of materials to readings, with a soft L1 loss and normal priors.
 
@@ -246,17 +261,24 @@ def fit_values(
         (n,) which offset each reading has.
     start
         (n_values,) where to begin.
+    at_start
+        The readings predicted there, where they are known.
     """
-    prior = np.array([value.prior for value in of])
+    prior = plan_values(of)
     spread = np.array([value.spread for value in of])
     last: list[tuple[Floats, Floats, Floats]] = []
 
+    def keep(values: Floats, predicted: Levels) -> None:
+        residual, change, _ = residuals_db(traced.survey, groups, predicted)
+        last[:] = [(values.copy(), residual / NOISE_DB, change / NOISE_DB)]
+
     def evaluated(values: Floats) -> tuple[Floats, Floats]:
         if not last or not np.array_equal(last[0][0], values):
-            level, slopes = traced.levels_db(of, values, slopes=True)
-            residual, change, _ = residuals_db(traced.survey, groups, level, slopes)
-            last[:] = [(values.copy(), residual / NOISE_DB, change / NOISE_DB)]
+            keep(values, traced.levels_db(of, values, slopes=True))
         return last[0][1:]
+
+    if at_start is not None:
+        keep(start, at_start)
 
     def rows(values: Floats) -> Floats:
         return np.append(evaluated(values)[0], (values - prior) / spread)
@@ -357,7 +379,9 @@ class Calibrated:
     fit: Fit
 
 
-def fit_what_is_told(traced: TracedSurvey, of: Sequence[MaterialValue], groups: Ints) -> Calibrated:
+def fit_what_is_told(
+    traced: TracedSurvey, of: Sequence[MaterialValue], groups: Ints, at_plan: Levels
+) -> Calibrated:
     """Fit the properties that readings tell at the values of the plan and at the fitted ones.
 
     Parameters
@@ -366,13 +390,14 @@ def fit_what_is_told(traced: TracedSurvey, of: Sequence[MaterialValue], groups: 
         The readings to fit to, and the properties that may be fitted.
     groups
         (n,) which offset each reading has.
+    at_plan
+        The readings predicted with the plan's values of all properties.
     """
-    prior = np.array([value.prior for value in of])
-    level, slopes = traced.levels_db(of, prior, slopes=True)
-    _, change, _ = residuals_db(traced.survey, groups, level, slopes)
+    prior = plan_values(of)
+    _, change, _ = residuals_db(traced.survey, groups, at_plan)
     kept, not_told = tell(of, change)
     told = tuple(of[k] for k in kept)
-    fit = fit_values(traced, told, groups, prior[kept])
+    fit = fit_values(traced, told, groups, prior[kept], at_plan.of_values(kept))
     kept, also = tell(told, fit.slopes_db)
     if also:
         told = tuple(told[k] for k in kept)

@@ -128,6 +128,11 @@ def material_values(
     )
 
 
+def plan_values(of: Sequence[MaterialValue]) -> Floats:
+    """Return what the plan says of some properties (n_values,)."""
+    return np.array([value.prior for value in of])
+
+
 def slabs_with(
     slabs: Sequence[Slab], of: Sequence[MaterialValue], values: Floats, frequency_hz: float
 ) -> list[Slab]:

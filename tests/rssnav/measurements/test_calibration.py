@@ -143,11 +143,9 @@ def test_slopes_of_residuals_are_those_of_differences(survey: Survey) -> None:
     groups = part.transmitter
 
     def residuals(point: np.ndarray) -> np.ndarray:
-        level, slopes = traced.levels_db(of, point, slopes=False)
-        return residuals_db(part, groups, level, slopes)[0]
+        return residuals_db(part, groups, traced.levels_db(of, point, slopes=False))[0]
 
-    level, slopes = traced.levels_db(of, values, slopes=True)
-    residual, change, _ = residuals_db(part, groups, level, slopes)
+    residual, change, _ = residuals_db(part, groups, traced.levels_db(of, values, slopes=True))
     np.testing.assert_allclose(residual, residuals(values), atol=1e-9)
     assert (residual[part.is_censored] == 0.0).any()
     assert (residual[part.is_censored] < 0.0).any()
