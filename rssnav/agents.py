@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rssnav.arguments import require
 from rssnav.decision_process import DecisionProcess
 from rssnav.discrete_states import (
-    SENSITIVITY_DBM,
+    AGENT_SENSITIVITY_DBM,
     ExactStates,
     Fluctuation,
     GoalRule,
@@ -73,7 +73,7 @@ class RssAgent:
     states: StateRule = field(default_factory=ExactStates)
     terminal_dbm: float = -21.0
     fluctuation: Fluctuation = field(default_factory=Fluctuation)
-    sensitivity_dbm: float = SENSITIVITY_DBM
+    sensitivity_dbm: float = AGENT_SENSITIVITY_DBM
 
     def __post_init__(self) -> None:
         check_sensitivity(self.sensitivity_dbm, self.terminal_dbm)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from rssnav.arguments import require
 from rssnav.kernels.q_learning_from_readings import BY_CELL, INTERVALS, TOLERANCE, Sensor
 
-SENSITIVITY_DBM = -150.0
+AGENT_SENSITIVITY_DBM = -150.0
 """Readings that are not above this level are "no signal" [dBm]: the thermal noise of 250 Hz, which
 is less than the weakest cell of the paper's scenarios has."""
 
@@ -184,7 +184,7 @@ def reading_states(
     fluctuation: Fluctuation,
     rss_dbm: NDArray[np.float64],
     goal: GoalRule,
-    sensitivity_dbm: float = SENSITIVITY_DBM,
+    sensitivity_dbm: float = AGENT_SENSITIVITY_DBM,
 ) -> ReadingStates:
     """Apply a state rule to the RSS (S,) [dBm] of a world's cells, -inf without a path."""
     heard_dbm = heard(rss_dbm, sensitivity_dbm)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from raytrace.threads import n_threads
 from rssnav.agents import RssAgent
 from rssnav.arguments import require
-from rssnav.discrete_states import SENSITIVITY_DBM, Fluctuation
+from rssnav.discrete_states import AGENT_SENSITIVITY_DBM, Fluctuation
 from rssnav.kernels import particle_filter, searchers
 from rssnav.kernels.common import Moves
 from rssnav.kernels.particle_filter import Belief, Chart, Model
@@ -157,7 +157,7 @@ def search(
     seed: int = 0,
     terminal_dbm: float = -21.0,
     fluctuation: Fluctuation | None = None,
-    sensitivity_dbm: float = SENSITIVITY_DBM,
+    sensitivity_dbm: float = AGENT_SENSITIVITY_DBM,
     threads: int | None = None,
 ) -> SearchResult:
     """Fly a searcher from the start, in many independent runs.

@@ -5,7 +5,6 @@ each interaction, and the receiver's amplitude carried backwards to behind it, o
 gives the derivatives with respect to all its slabs.
 """
 
-import math
 from typing import NamedTuple
 
 from raytrace.arrays import Floats, Ints
@@ -39,6 +38,7 @@ from raytrace.kernels.step_gains import (
     into_edge,
     propagated,
     received,
+    size_of,
 )
 from raytrace.kernels.steps import (
     ACROSS,
@@ -53,9 +53,7 @@ from raytrace.kernels.steps import (
     MIXED_SHADOW,
     OUT_ACROSS,
     OUT_ALONG,
-    ROOT_2KL,
     SHADOWS,
-    SPREADING,
     SQUARED_N,
     SQUARED_O,
 )
@@ -98,12 +96,10 @@ class Scratch(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Eight paths in work: receivers and weights of all, the first of these, the first wedge."""
+    """Block b of paths, in work: receivers (n, 8) of all blocks."""
 
     receiver: Ints
-    weight: Floats
-    i: int
-    w: int
+    b: int
 
 
 @jit(inline=True)
@@ -154,7 +150,7 @@ def add_slopes(
         for j in range(WIDTH):
             if row[j] != 0.0:
                 slab = int(lane(at[0], j))
-                sums.slopes[work.receiver[work.i + j], slab, slot] += row[j]
+                sums.slopes[work.receiver[work.b, j], slab, slot] += row[j]
 
 
 @jit(inline=True, fast=True)
@@ -169,9 +165,9 @@ def add_wall(
     row: Floats,
 ) -> None:
     """Add what reflections and transmissions contribute; `fields` are those before and behind."""
-    (x, y), i = fields, work.i
-    a, b = load(frame[ALONG, i:]), load(frame[ACROSS, i:])
-    cosine, along = load(frame[COSINE, i:]), x.v * a + x.h * b
+    x, y = fields
+    a, b = load(frame[ALONG]), load(frame[ACROSS])
+    cosine, along = load(frame[COSINE]), x.v * a + x.h * b
     reflects, transmits = (code > 0.0) & (code < DIFFRACTED), code < 0.0
     if any_of(reflects):
         at = where(reflects, code - 1.0, 0.0), cosine
@@ -214,29 +210,43 @@ def add_wedge(
     sums: PowerSums,
     slopes: TableSlopes,
     rows: int,
-    lanes: StepLanes,
+    edge: tuple[Floats, Floats],
     diffraction: Diffraction,
     work: Work,
     fields: tuple[Pair, Pair, Mask],
     row: Floats,
 ) -> None:
-    """Add what diffractions contribute; `fields` are along the edges and across them."""
+    """Add what diffractions contribute.
+
+    Parameters
+    ----------
+    sums, slopes, rows
+        Added to; derivatives of the tables of slabs, and their rows for each slab.
+    edge
+        Wedges (21, 8) and slabs of their faces (2, 8), see `StepLanes`.
+    diffraction, work
+        Of the eight paths.
+    fields
+        Before and behind the edges, along them and across them; which paths there are.
+    row
+        Scratch.
+    """
     x, y, mask = fields
-    wedge, face, w = lanes.wedge, lanes.face, work.w
+    wedge, face = edge
     at_o, at_n = diffraction.at_o, diffraction.at_n
-    cosine, squared = load(wedge[COSINE_O, w:]), load(wedge[SQUARED_O, w:])
-    at = load(face[0, w:]), cosine
-    turn = cosine, squared, load(wedge[MIXED_O, w:])
+    cosine, squared = load(wedge[COSINE_O]), load(wedge[SQUARED_O])
+    at = load(face[0]), cosine
+    turn = cosine, squared, load(wedge[MIXED_O])
     table = slopes.reflection, rows
     add_slopes(sums, table, work, mask, at, face_sensitivity(at_o, turn, x, y), row)
-    has_n = mask & (load(wedge[COSINE_N, w:]) > 0.0)
+    has_n = mask & (load(wedge[COSINE_N]) > 0.0)
     if any_of(has_n):
-        n_cosine = load(wedge[COSINE_N, w:])
-        turn = n_cosine, load(wedge[SQUARED_N, w:]), load(wedge[MIXED_N, w:])
-        at_face = load(face[1, w:]), n_cosine
+        n_cosine = load(wedge[COSINE_N])
+        turn = n_cosine, load(wedge[SQUARED_N]), load(wedge[MIXED_N])
+        at_face = load(face[1]), n_cosine
         sensitivity = face_sensitivity(at_n, turn, x, y)
         add_slopes(sums, table, work, has_n, at_face, sensitivity, row)
-    shadow, mixed = load(wedge[SHADOWS, w:]), load(wedge[MIXED_SHADOW, w:])
+    shadow, mixed = load(wedge[SHADOWS]), load(wedge[MIXED_SHADOW])
     has_shadow = mask & (shadow > 0.0)
     if any_of(has_shadow):
         less = diffraction.incident * (shadow * -1.0)
@@ -248,30 +258,19 @@ def add_wedge(
 
 
 @jit(inline=True, fast=True)
-def before_wedge(wedge: Floats, w: int, dyad: Dyad, behind: Pair) -> Pair:
+def before_wedge(wedge: Floats, dyad: Dyad, behind: Pair) -> Pair:
     """Carry amplitudes along an edge and across it back to V and H before it: the transpose."""
     along = dyad.along * behind.v + dyad.across_along * behind.h
     across = dyad.along_across * behind.v + dyad.across * behind.h
-    a, c = load(wedge[IN_ALONG, w:]), load(wedge[IN_ACROSS, w:])
+    a, c = load(wedge[IN_ALONG]), load(wedge[IN_ACROSS])
     return Pair(along * a - across * c, along * c + across * a)
 
 
 @jit(inline=True, fast=True)
-def behind_wedge(wedge: Floats, w: int, backward: Pair) -> Pair:
+def behind_wedge(wedge: Floats, backward: Pair) -> Pair:
     """Carry amplitudes of V and H back to those along an edge and across it: the transpose."""
-    a, c = load(wedge[OUT_ALONG, w:]), load(wedge[OUT_ACROSS, w:])
+    a, c = load(wedge[OUT_ALONG]), load(wedge[OUT_ACROSS])
     return Pair(backward.v * a + backward.h * c, backward.h * a - backward.v * c)
-
-
-@jit(inline=True, fast=True)
-def size_of(tables: FieldTables, lanes: StepLanes, i: int, w: int) -> Lanes:
-    """Squared magnitudes of what multiplies received amplitudes, see `step_gains.scale_of`."""
-    spreading = load(lanes.ends[SPREADING, i:]) * (tables.wavelength / (4.0 * math.pi))
-    size = spreading * spreading
-    if w >= 0:
-        factor = tables.wavelength * (1.0 / (16.0 * math.pi * math.pi))
-        size = where(load(lanes.wedge[ROOT_2KL, w:]) > 0.0, size * factor, size)
-    return size
 
 
 @jit(allocates=False, fast=True)
@@ -292,7 +291,7 @@ def add_power_slopes(
     tables, slopes
         Materials and antennas, and derivatives of the materials' tables.
     lanes, receiver, weight
-        The paths; (n,) their receivers, and their weights, 0 for what fills up the last eight.
+        The paths; (n, 8) their receivers, and their weights, 0 for what fills up a block.
     sums
         Added to.
     scratch, guard
@@ -300,35 +299,33 @@ def add_power_slopes(
     """
     rows, row = tables.slab_rows, scratch.row
     one, zero = complex_of(lanes_of(1.0), 0.0), complex_of(lanes_of(0.0), 0.0)
-    undiffracted = lanes.code.shape[1] - lanes.wedge.shape[1]
-    for i in range(0, lanes.code.shape[1], WIDTH):
+    undiffracted = len(lanes.code) - len(lanes.wedge)
+    for b in range(len(lanes.code)):
         if is_stopped(guard):
             break
-        w = i - undiffracted
-        work = Work(receiver, weight, i, w)
-        diffraction = diffraction_of(tables, lanes, w)
-        field = propagated(tables, lanes, i, w, diffraction, scratch.fields)
-        v = received(tables, lanes.ends, i, Pair(one, zero))
-        h = received(tables, lanes.ends, i, Pair(zero, one))
+        d, work = b - undiffracted, Work(receiver, b)
+        diffraction = diffraction_of(tables, lanes, d)
+        field = propagated(tables, lanes, b, d, diffraction, scratch.fields)
+        v = received(tables, lanes.ends[b], Pair(one, zero))
+        h = received(tables, lanes.ends[b], Pair(zero, one))
         amplitude = v * field.v + h * field.h
-        size = size_of(tables, lanes, i, w) * load(weight[i:])
-        power = real_of(amplitude * conjugate(amplitude)) * size
-        store(row, power)
+        size = size_of(tables, lanes, b, d) * load(weight[b])
+        store(row, real_of(amplitude * conjugate(amplitude)) * size)
         for j in range(WIDTH):
-            sums.power[receiver[i + j]] += row[j]
+            sums.power[receiver[b, j]] += row[j]
         scale = conjugate(amplitude) * (size * 2.0)
         y = Pair(v * scale, h * scale)
-        for back in range(len(lanes.code)):
-            k = len(lanes.code) - 1 - back
-            code, x = load(lanes.code[k, i:]), load_pair(scratch.fields[k])
+        for back in range(lanes.code.shape[1]):
+            k = lanes.code.shape[1] - 1 - back
+            code, x = load(lanes.code[b, k]), load_pair(scratch.fields[k])
             is_edge = code >= DIFFRACTED
             if any_of((code < DIFFRACTED) & ((code > 0.0) | (code < 0.0))):
-                add_wall(sums, slopes, rows, code, lanes.frame[k], work, (x, y), row)
-                y = at_wall(tables, code, lanes.frame[k], i, y, -1.0)
+                add_wall(sums, slopes, rows, code, lanes.frame[b, k], work, (x, y), row)
+                y = at_wall(tables, code, lanes.frame[b, k], y, -1.0)
             if any_of(is_edge):
-                at_edge = into_edge(lanes.wedge, w, x)
-                behind = behind_wedge(lanes.wedge, w, y)
-                fields = at_edge, behind, is_edge
-                add_wedge(sums, slopes, rows, lanes, diffraction, work, fields, row)
-                before = before_wedge(lanes.wedge, w, diffraction.dyad, behind)
-                y = chosen(is_edge, before, y)
+                wedge = lanes.wedge[d]
+                behind = behind_wedge(wedge, y)
+                fields = into_edge(wedge, x), behind, is_edge
+                edge = wedge, lanes.face[d]
+                add_wedge(sums, slopes, rows, edge, diffraction, work, fields, row)
+                y = chosen(is_edge, before_wedge(wedge, diffraction.dyad, behind), y)

@@ -1,14 +1,15 @@
 """Gains of paths from their steps: eight paths at a time, of any kinds.
 
-The steps are those of `raytrace.kernels.steps`, with the paths along the last axis, so that eight
-neighbours are loaded at once. Neighbours should have the same kinds of interactions in the same
-order: what any of the eight has is computed for all.
+The steps are those of `raytrace.kernels.steps` in blocks of eight paths, one block after the other:
+an evaluation reads memory once from its beginning to its end, which takes most of its time. The
+paths of a block should have the same kinds of interactions in the same order: what any of the eight
+has is computed for all.
 """
 
 import math
 from typing import Any, NamedTuple
 
-from raytrace.arrays import Floats
+from raytrace.arrays import Floats, Ints
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field_tables import FieldTables, phasor, slab_lookup
 from raytrace.kernels.lanes import (
@@ -21,6 +22,7 @@ from raytrace.kernels.lanes import (
     imag_of,
     lanes_of,
     load,
+    minimum,
     real_of,
     store,
     where,
@@ -61,21 +63,21 @@ DIFFRACTED = 1e6
 
 
 class StepLanes(NamedTuple):
-    """The steps of n paths, n a multiple of eight, path by path along the last axis.
+    """The steps of n blocks of eight paths.
 
     Attributes
     ----------
     code
-        (most, n) of each interaction: slab + 1 of a reflection, -slab - 1 of a transmission,
+        (n, most, 8) of each interaction: slab + 1 of a reflection, -slab - 1 of a transmission,
         `DIFFRACTED`, or 0 for none.
     frame
-        (most, 3, n) see `Steps.frame`.
+        (n, most, 3, 8) see `Steps.frame`.
     ends
-        (8, n) see `Steps.ends`.
+        (n, 8, 8) see `Steps.ends`.
     wedge
-        (21, n_diffracted) see `Steps.wedge`; of the last paths, which are those with a diffraction.
+        (n_diffracted, 21, 8) see `Steps.wedge`; of the last blocks, whose paths have a diffraction.
     face
-        (2, n_diffracted) slabs of the faces, 0 for paths without diffraction.
+        (n_diffracted, 2, 8) slabs of the faces.
     """
 
     code: Floats
@@ -120,24 +122,22 @@ class Diffraction(NamedTuple):
 
 
 @jit(inline=True, fast=True)
-def at_wall(
-    tables: FieldTables, code: Lanes, frame: Floats, i: int, field: Pair, way: float
-) -> Pair:
+def at_wall(tables: FieldTables, code: Lanes, frame: Floats, field: Pair, way: float) -> Pair:
     """Carry eight paths through a reflection or a transmission; the others stay as they are.
 
     Parameters
     ----------
     tables
         The materials.
-    code, frame, i
-        The interactions, see `StepLanes`; of the paths from i on.
+    code, frame
+        The interactions (8,) and (3, 8), see `StepLanes`.
     field, way
         Fields before it to those behind it for 1; for -1 amplitudes behind it to those before it,
         by the transpose, which is that of the opposite `ACROSS` for a reflection, and the same for
         a transmission.
     """
-    a, b = load(frame[ALONG, i:]), load(frame[ACROSS, i:])
-    cosine = load(frame[COSINE, i:])
+    a, b = load(frame[ALONG]), load(frame[ACROSS])
+    cosine = load(frame[COSINE])
     v, h = field
     reflects, transmits = (code > 0.0) & (code < DIFFRACTED), code < 0.0
     if any_of(reflects):
@@ -156,9 +156,9 @@ def at_wall(
 
 
 @jit(inline=True, fast=True)
-def wedge_term_of(tables: FieldTables, wedge: Floats, i: int, k: int, scale: Lanes) -> ComplexLanes:
+def wedge_term_of(tables: FieldTables, wedge: Floats, k: int, scale: Lanes) -> ComplexLanes:
     """One of the four terms (docs/theory.md, eq. 17)."""
-    factor, size = load(wedge[FACTOR_0 + 2 * k, i:]), load(wedge[FACTOR_0 + 2 * k + 1, i:])
+    factor, size = load(wedge[FACTOR_0 + 2 * k]), load(wedge[FACTOR_0 + 2 * k + 1])
     if not any_of((size > 0.0) | (size < 0.0)):
         return complex_of(lanes_of(0.0), 0.0)
     return transition_ratio(tables.transition, scale * factor) * (scale * size)
@@ -175,43 +175,42 @@ def face_part(
 
 
 @jit(inline=True, fast=True)
-def dyad_of(tables: FieldTables, lanes: StepLanes, i: int, terms: tuple[Any, Any, Any]) -> Dyad:
+def dyad_of(tables: FieldTables, wedge: Floats, face: Floats, terms: tuple[Any, Any, Any]) -> Dyad:
     """What the wedges of eight paths make of a field."""
-    wedge, face = lanes.wedge, lanes.face
     incident, at_n, at_o = terms
-    cosine, squared = load(wedge[COSINE_O, i:]), load(wedge[SQUARED_O, i:])
-    slab, mixed = load(face[0, i:]), load(wedge[MIXED_O, i:])
+    cosine, squared = load(wedge[COSINE_O]), load(wedge[SQUARED_O])
+    slab, mixed = load(face[0]), load(wedge[MIXED_O])
     te, mx, tm = face_part(tables, slab, cosine, squared, mixed)
     te, mx, tm = te * at_o, mx * at_o, tm * at_o
-    if any_of(load(wedge[COSINE_N, i:]) > 0.0):
-        n_cosine, n_squared = load(wedge[COSINE_N, i:]), load(wedge[SQUARED_N, i:])
+    if any_of(load(wedge[COSINE_N]) > 0.0):
+        n_cosine, n_squared = load(wedge[COSINE_N]), load(wedge[SQUARED_N])
         n_te, n_mx, n_tm = face_part(
-            tables, load(face[1, i:]), n_cosine, n_squared, load(wedge[MIXED_N, i:])
+            tables, load(face[1]), n_cosine, n_squared, load(wedge[MIXED_N])
         )
         te, mx, tm = te + n_te * at_n, mx + n_mx * at_n, tm + n_tm * at_n
-    shadow = load(wedge[SHADOWS, i:])
+    shadow = load(wedge[SHADOWS])
     along, across = incident, incident
     crossed = complex_of(lanes_of(0.0), 0.0)
     if any_of(shadow > 0.0):
         through_tm, mix = slab_lookup(tables.transmission, tables.slab_rows, slab, cosine)
         difference = mix * (1.0 - cosine * cosine)
-        crossed = incident * difference * (load(wedge[MIXED_SHADOW, i:]) * -shadow)
+        crossed = incident * difference * (load(wedge[MIXED_SHADOW]) * -shadow)
         along = incident * (1.0 - (through_tm + difference * (1.0 - squared)) * shadow)
         across = incident * (1.0 - (through_tm + difference * squared) * shadow)
     return Dyad(along + te, crossed + mx, crossed - mx, across + tm)
 
 
 @jit(inline=True, fast=True)
-def into_edge(wedge: Floats, i: int, field: Pair) -> Pair:
+def into_edge(wedge: Floats, field: Pair) -> Pair:
     """Components of a field along an edge and across it."""
-    along, across = load(wedge[IN_ALONG, i:]), load(wedge[IN_ACROSS, i:])
+    along, across = load(wedge[IN_ALONG]), load(wedge[IN_ACROSS])
     return Pair(field.v * along + field.h * across, field.h * along - field.v * across)
 
 
 @jit(inline=True, fast=True)
-def out_of_edge(wedge: Floats, i: int, field: Pair) -> Pair:
+def out_of_edge(wedge: Floats, field: Pair) -> Pair:
     """V and H of a field that is given along an edge and across it."""
-    along, across = load(wedge[OUT_ALONG, i:]), load(wedge[OUT_ACROSS, i:])
+    along, across = load(wedge[OUT_ALONG]), load(wedge[OUT_ACROSS])
     return Pair(field.v * along - field.h * across, field.v * across + field.h * along)
 
 
@@ -225,18 +224,18 @@ def after_wedge(dyad: Dyad, field: Pair) -> Pair:
 
 
 @jit(inline=True, fast=True)
-def launched(tables: FieldTables, ends: Floats, i: int) -> Pair:
+def launched(tables: FieldTables, ends: Floats) -> Pair:
     """Fields that the transmitter radiates along eight paths."""
-    direction = load(ends[LAUNCH_X, i:]), load(ends[LAUNCH_Y, i:])
-    wave = launch(tables, direction, load(ends[LAUNCH_SINE, i:]))
+    direction = load(ends[LAUNCH_X]), load(ends[LAUNCH_Y])
+    wave = launch(tables, direction, load(ends[LAUNCH_SINE]))
     return Pair(wave.v, wave.h)
 
 
 @jit(inline=True, fast=True)
-def received(tables: FieldTables, ends: Floats, i: int, field: Pair) -> ComplexLanes:
+def received(tables: FieldTables, ends: Floats, field: Pair) -> ComplexLanes:
     """Amplitudes that the receivers' antenna takes from fields."""
-    direction = load(ends[ARRIVAL_X, i:]), load(ends[ARRIVAL_Y, i:])
-    wave = Wave(field.v, field.h, load(ends[ARRIVAL_SINE, i:]), lanes_of(0.0))
+    direction = load(ends[ARRIVAL_X]), load(ends[ARRIVAL_Y])
+    wave = Wave(field.v, field.h, load(ends[ARRIVAL_SINE]), lanes_of(0.0))
     return receive(tables, wave, direction)
 
 
@@ -248,52 +247,53 @@ def no_wedge() -> Diffraction:
 
 
 @jit(inline=True, fast=True)
-def diffraction_of(tables: FieldTables, lanes: StepLanes, w: int) -> Diffraction:
-    """What diffracts eight paths, the first of which is diffracted path w; w < 0 for none."""
-    if w < 0:
+def diffraction_of(tables: FieldTables, lanes: StepLanes, d: int) -> Diffraction:
+    """What diffracts the paths of diffracted block d; d < 0 for blocks without diffraction."""
+    if d < 0:
         return no_wedge()
-    scale = load(lanes.wedge[ROOT_2KL, w:]) * (1.0 / math.sqrt(tables.wavelength))
-    incident = wedge_term_of(tables, lanes.wedge, w, 0, scale)
-    incident = incident + wedge_term_of(tables, lanes.wedge, w, 1, scale)
-    at_n = wedge_term_of(tables, lanes.wedge, w, 2, scale)
-    at_o = wedge_term_of(tables, lanes.wedge, w, 3, scale)
-    return Diffraction(incident, at_n, at_o, dyad_of(tables, lanes, w, (incident, at_n, at_o)))
+    wedge = lanes.wedge[d]
+    scale = load(wedge[ROOT_2KL]) * (1.0 / math.sqrt(tables.wavelength))
+    incident = wedge_term_of(tables, wedge, 0, scale) + wedge_term_of(tables, wedge, 1, scale)
+    at_n, at_o = wedge_term_of(tables, wedge, 2, scale), wedge_term_of(tables, wedge, 3, scale)
+    dyad = dyad_of(tables, wedge, lanes.face[d], (incident, at_n, at_o))
+    return Diffraction(incident, at_n, at_o, dyad)
 
 
 @jit(inline=True, fast=True)
 def propagated(
     tables: FieldTables,
     lanes: StepLanes,
-    i: int,
-    w: int,
+    b: int,
+    d: int,
     diffraction: Diffraction,
     fields: Floats,
 ) -> Pair:
-    """Fields at the ends of eight paths.
+    """Fields at the ends of the paths of a block.
 
     Parameters
     ----------
     tables, lanes
         Materials, antennas and paths.
-    i, w
-        The first of the eight, and its number among those with a diffraction; below 0 for none.
+    b, d
+        Number of the block, and its number among those with a diffraction; below 0 for others.
     diffraction
-        Of the eight.
+        Of the block.
     fields
         (most, 4, 8) is filled with the fields before each interaction; (0, 4, 8) if these are not
         wanted.
     """
-    field = launched(tables, lanes.ends, i)
-    for k in range(len(lanes.code)):
+    field = launched(tables, lanes.ends[b])
+    for k in range(lanes.code.shape[1]):
         if k < len(fields):
             store_pair(fields[k], field)
-        code = load(lanes.code[k, i:])
+        code = load(lanes.code[b, k])
         is_edge = code >= DIFFRACTED
         if any_of(is_edge):
-            after = after_wedge(diffraction.dyad, into_edge(lanes.wedge, w, field))
-            field = chosen(is_edge, out_of_edge(lanes.wedge, w, after), field)
+            wedge = lanes.wedge[d]
+            after = after_wedge(diffraction.dyad, into_edge(wedge, field))
+            field = chosen(is_edge, out_of_edge(wedge, after), field)
         if any_of((code < DIFFRACTED) & ((code > 0.0) | (code < 0.0))):
-            field = at_wall(tables, code, lanes.frame[k], i, field, 1.0)
+            field = at_wall(tables, code, lanes.frame[b, k], field, 1.0)
     return field
 
 
@@ -313,27 +313,69 @@ def chosen(mask: Mask, one: Pair, other: Pair) -> Pair:
 
 
 @jit(inline=True, fast=True)
-def scale_of(tables: FieldTables, lanes: StepLanes, i: int, w: int) -> ComplexLanes:
+def scale_of(tables: FieldTables, lanes: StepLanes, b: int, d: int) -> ComplexLanes:
     """What multiplies received amplitudes: spreading, phase, the factor of diffraction."""
-    turns = load(lanes.ends[LENGTH, i:]) * (1.0 / tables.wavelength)
-    spreading = load(lanes.ends[SPREADING, i:]) * (tables.wavelength / (4.0 * math.pi))
+    turns = load(lanes.ends[b, LENGTH]) * (1.0 / tables.wavelength)
+    spreading = load(lanes.ends[b, SPREADING]) * (tables.wavelength / (4.0 * math.pi))
     scale = phasor(tables.cis, turns) * spreading
-    if w >= 0:
-        is_diffracted = load(lanes.wedge[ROOT_2KL, w:]) > 0.0
-        factor = common_factor(1.0, tables.wavelength)
-        scale = where_complex(is_diffracted, scale * factor, scale)
+    if d >= 0:
+        scale = scale * common_factor(1.0, tables.wavelength)
     return scale
+
+
+@jit(inline=True, fast=True)
+def size_of(tables: FieldTables, lanes: StepLanes, b: int, d: int) -> Lanes:
+    """Squared magnitudes of what multiplies received amplitudes, see `scale_of`."""
+    spreading = load(lanes.ends[b, SPREADING]) * (tables.wavelength / (4.0 * math.pi))
+    size = spreading * spreading
+    if d >= 0:
+        size = size * (tables.wavelength * (1.0 / (16.0 * math.pi * math.pi)))
+    return size
 
 
 @jit(allocates=False, fast=True)
 def write_gains(
     tables: FieldTables, lanes: StepLanes, fields: Floats, real: Floats, imag: Floats
 ) -> None:
-    """Write the gains of all paths to two arrays (n,); `fields` is (0, 4, 8)."""
-    undiffracted = lanes.code.shape[1] - lanes.wedge.shape[1]
-    for i in range(0, lanes.code.shape[1], WIDTH):
-        w = i - undiffracted
-        field = propagated(tables, lanes, i, w, diffraction_of(tables, lanes, w), fields)
-        gain = received(tables, lanes.ends, i, field) * scale_of(tables, lanes, i, w)
-        store(real[i:], real_of(gain))
-        store(imag[i:], imag_of(gain))
+    """Write the gains of all paths to two arrays (n, 8); `fields` is (0, 4, 8)."""
+    undiffracted = len(lanes.code) - len(lanes.wedge)
+    for b in range(len(lanes.code)):
+        d = b - undiffracted
+        field = propagated(tables, lanes, b, d, diffraction_of(tables, lanes, d), fields)
+        gain = received(tables, lanes.ends[b], field) * scale_of(tables, lanes, b, d)
+        store(real[b], real_of(gain))
+        store(imag[b], imag_of(gain))
+
+
+@jit(allocates=False, fast=True)
+def add_powers(
+    tables: FieldTables,
+    lanes: StepLanes,
+    receiver: Ints,
+    weight: Floats,
+    scratch: tuple[Floats, Floats],
+    power: Floats,
+) -> None:
+    """Add the powers of paths, each at most 1, to those of their receivers.
+
+    Parameters
+    ----------
+    tables, lanes
+        Materials, antennas and paths.
+    receiver, weight
+        (n, 8) of the paths; the weight is 0 for what fills up a block.
+    scratch
+        Working arrays (0, 4, 8) and (8,).
+    power
+        (n_receivers,) added to.
+    """
+    (fields, row), undiffracted = scratch, len(lanes.code) - len(lanes.wedge)
+    for b in range(len(lanes.code)):
+        d = b - undiffracted
+        field = propagated(tables, lanes, b, d, diffraction_of(tables, lanes, d), fields)
+        amplitude = received(tables, lanes.ends[b], field)
+        re, im = real_of(amplitude), imag_of(amplitude)
+        one = minimum((re * re + im * im) * size_of(tables, lanes, b, d), 1.0)
+        store(row, one * load(weight[b]))
+        for j in range(WIDTH):
+            power[receiver[b, j]] += row[j]

@@ -12,14 +12,14 @@ from raytrace.kernels.steps import DIFFRACTION, REFLECTION, TRANSMISSION, Steps
 
 
 def step_lanes(steps: Steps) -> tuple[StepLanes, Ints]:
-    """Sort paths by their interactions, those with a diffraction last, eight by eight.
+    """Sort paths by their interactions, those with a diffraction last, in blocks of eight.
 
     Returns
     -------
     lanes
-        The steps of n paths, n a multiple of eight.
+        The steps of n blocks.
     path
-        (n,) which path each is; -1 for what fills up the last eight.
+        (n, 8) which path each is; -1 for what fills up the last block.
     """
     code = _codes(steps)
     is_diffracted = (steps.kind == DIFFRACTION).any(axis=1)
@@ -32,12 +32,18 @@ def step_lanes(steps: Steps) -> tuple[StepLanes, Ints]:
     diffracted = path_or_last[n_plain:]
     used = int((steps.kind != 0).sum(axis=1).max(initial=0))
     return StepLanes(
-        np.ascontiguousarray(code[path_or_last, :used].T),
-        np.ascontiguousarray(steps.frame[path_or_last, :used].transpose(1, 2, 0)),
-        np.ascontiguousarray(steps.ends[path_or_last].T),
-        np.ascontiguousarray(steps.wedge[diffracted].T),
-        np.ascontiguousarray(np.maximum(steps.face[diffracted], 0).T.astype(np.float64)),
-    ), path
+        blocks_of(code[path_or_last, :used]),
+        blocks_of(steps.frame[path_or_last, :used]),
+        blocks_of(steps.ends[path_or_last]),
+        blocks_of(steps.wedge[diffracted]),
+        blocks_of(np.maximum(steps.face[diffracted], 0).astype(np.float64)),
+    ), path.reshape(-1, WIDTH)
+
+
+def blocks_of(paths: Floats) -> Floats:
+    """Bring what n * 8 paths have (n * 8, ...) into blocks (n, ..., 8)."""
+    blocks = paths.reshape(-1, WIDTH, *paths.shape[1:])
+    return np.ascontiguousarray(np.moveaxis(blocks, 1, -1))
 
 
 def _codes(steps: Steps) -> Floats:
@@ -61,7 +67,7 @@ def _last_real(path: Ints) -> Ints:
 def gains_of(tables: FieldTables, steps: Steps) -> Complexes:
     """Compute gains (n,), both antennas included, from steps."""
     lanes, path = step_lanes(steps)
-    real, imag = np.zeros(len(path)), np.zeros(len(path))
+    real, imag = np.zeros(path.shape), np.zeros(path.shape)
     write_gains(tables, lanes, np.empty((0, 4, WIDTH)), real, imag)
     gains = np.zeros(len(steps.kind), dtype=np.complex128)
     is_real = path >= 0

@@ -20,9 +20,9 @@ from raytrace.kernels.step_derivatives import (
     TableSlopes,
     add_power_slopes,
 )
-from raytrace.kernels.step_gains import StepLanes, write_gains
+from raytrace.kernels.step_gains import StepLanes, add_powers
 from raytrace.kernels.steps import PATH_BYTES, STEP_BYTES, joined
-from raytrace.results.step_lanes import step_lanes
+from raytrace.results.step_lanes import blocks_of, step_lanes
 from raytrace.solver.limits import check_whole, taking
 from raytrace.solver.path_class import Evaluation, KeptRecord, PathClass
 from raytrace.solver.workers import Workers
@@ -41,7 +41,7 @@ class KeptPaths:
     lanes
         The steps of the paths.
     receiver, weight
-        (n_lanes,) which point each path reaches, and its weight; 0 for what fills up the lanes.
+        (n_blocks, 8) which point each path reaches, and its weight; 0 for what fills up a block.
     left_out
         (n,) fraction of each point's power that the paths which were not kept had.
     """
@@ -62,26 +62,26 @@ class KeptPaths:
         number[points] = np.arange(len(points))
         receiver = number[self.receiver]
         is_kept = (receiver >= 0) & (self.weight > 0.0)
-        first = self.lanes.code.shape[1] - self.lanes.wedge.shape[1]
+        first = len(self.lanes.code) - len(self.lanes.wedge)
         plain, diffracted = (
             _filled_up(np.flatnonzero(part) + begin)
-            for part, begin in ((is_kept[:first], 0), (is_kept[first:], first))
+            for part, begin in ((is_kept[:first], 0), (is_kept[first:], first * WIDTH))
         )
         path = np.concatenate([plain, diffracted])
         lanes = StepLanes(
-            *(np.ascontiguousarray(a[..., path]) for a in self.lanes[:3]),
-            *(np.ascontiguousarray(a[..., diffracted - first]) for a in self.lanes[3:]),
+            *(_of_paths(array, path) for array in self.lanes[:3]),
+            *(_of_paths(array, diffracted - first * WIDTH) for array in self.lanes[3:]),
         )
-        weight = np.where(_is_first(path), self.weight[path], 0.0)
-        return KeptPaths(len(points), lanes, receiver[path], weight, self.left_out[points])
+        weight = np.where(_is_first(path), self.weight.ravel()[path], 0.0).reshape(-1, WIDTH)
+        receiver = receiver.ravel()[path].reshape(-1, WIDTH)
+        return KeptPaths(len(points), lanes, receiver, weight, self.left_out[points])
 
     def powers(self, tables: FieldTables) -> Floats:
         """Sum the powers of the paths at each point (n,) [fraction of the transmitted]."""
-        real, imag = np.empty(len(self.receiver)), np.empty(len(self.receiver))
-        write_gains(tables, self.lanes, np.empty((0, 4, WIDTH)), real, imag)
-        power = np.minimum(real * real + imag * imag, 1.0)
-        sums = np.bincount(self.receiver, self.weight * power, self.n_points)
-        return sums.astype(np.float64)
+        power = np.zeros(self.n_points)
+        scratch = np.empty((0, 4, WIDTH)), np.empty(WIDTH)
+        add_powers(tables, self.lanes, self.receiver, self.weight, scratch, power)
+        return power
 
     def powers_and_slopes(
         self, tables: FieldTables, slopes: TableSlopes, guard: Guard | None = None
@@ -105,7 +105,7 @@ class KeptPaths:
             np.zeros(self.n_points),
             np.zeros((self.n_points, n_rows // tables.slab_rows, n_slots)),
         )
-        scratch = Scratch(np.empty((len(self.lanes.code), 4, WIDTH)), np.empty(WIDTH))
+        scratch = Scratch(np.empty((self.lanes.code.shape[1], 4, WIDTH)), np.empty(WIDTH))
         guard = guard or no_guard()
         work = self.lanes, self.receiver, self.weight
         add_power_slopes(tables, slopes, *work, sums, scratch, guard)
@@ -162,6 +162,11 @@ def keep_paths(
 def _filled_up(path: Ints) -> Ints:
     """Repeat the last number of a list until there are a multiple of eight."""
     return np.concatenate([path, np.repeat(path[-1:], -len(path) % WIDTH)])
+
+
+def _of_paths(blocks: Floats, path: Ints) -> Floats:
+    """Return blocks (n, ..., 8) of some of the paths of other blocks, by number in their order."""
+    return blocks_of(blocks[path // WIDTH, ..., path % WIDTH])
 
 
 def _is_first(path: Ints) -> Bools:

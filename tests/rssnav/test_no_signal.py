@@ -29,7 +29,7 @@ from rssnav import (
     train,
     value_iteration,
 )
-from rssnav.discrete_states import SENSITIVITY_DBM, heard
+from rssnav.discrete_states import AGENT_SENSITIVITY_DBM, heard
 from rssnav.kernels import particle_filter
 from rssnav.kernels.particle_filter import Belief, Model
 from rssnav.searchers import ParticleFilter, RandomWalk, RssAscent, search
@@ -44,7 +44,7 @@ ANY_RULE = pytest.mark.parametrize("rule", RULES, ids=["exact", "tolerance", "in
 LINE_OF_SIGHT = ("--reflections", "0", "--diffractions", "0", "--transmissions", "0")
 DARK = slice(5, 8)  # columns of the map, the start's among them
 
-readings = st.just(-math.inf) | st.floats(-170.0, -20.0) | st.just(SENSITIVITY_DBM)
+readings = st.just(-math.inf) | st.floats(-170.0, -20.0) | st.just(AGENT_SENSITIVITY_DBM)
 
 
 def dark_world(level_dbm: float = -math.inf) -> GridWorld:
@@ -57,11 +57,13 @@ def dark_world(level_dbm: float = -math.inf) -> GridWorld:
 @ANY_RULE
 @given(st.lists(readings, min_size=1, max_size=30))
 def test_no_signal_is_one_state_that_no_other_reading_has(rule, several) -> None:
-    heard_dbm = heard(np.array(several), SENSITIVITY_DBM)
+    heard_dbm = heard(np.array(several), AGENT_SENSITIVITY_DBM)
     states = states_of(rule, heard_dbm)
-    silent = {s for s, level in zip(states, heard_dbm, strict=True) if level <= SENSITIVITY_DBM}
+    silent = {
+        s for s, level in zip(states, heard_dbm, strict=True) if level <= AGENT_SENSITIVITY_DBM
+    }
     others = set(states) - silent
-    loud = [s for s, level in zip(states, heard_dbm, strict=True) if level > SENSITIVITY_DBM]
+    loud = [s for s, above in zip(states, is_heard, strict=True) if above]
     assert len(silent) <= 1
     assert others == set(loud)
     assert silent.isdisjoint(loud)
@@ -75,7 +77,7 @@ def test_rewards_in_the_dark_are_finite_and_sum_to_the_rise_of_the_reading() -> 
     assert flight.reached
     here, there = flight.states[:-1], flight.states[1:]
     action = np.argmax(process.next_state[here] == there[:, None], axis=1)
-    rise_db = world.rss_dbm[flight.states[-1]] - SENSITIVITY_DBM
+    rise_db = world.rss_dbm[flight.states[-1]] - AGENT_SENSITIVITY_DBM
     assert process.reward[here, action].sum() == pytest.approx(rise_db)
     assert not process.reward[here, action][:1].any()  # from no signal to no signal
 
@@ -86,7 +88,7 @@ def test_agent_learns_in_the_dark_as_where_all_is_just_at_its_sensitivity(rule) 
     agent = RssAgent(rule)
     dark = train(dark_world(), agent, **schedule)
     assert not dark.truncated.all()
-    faint = train(dark_world(SENSITIVITY_DBM - 7.0), agent, **schedule)
+    faint = train(dark_world(AGENT_SENSITIVITY_DBM - 7.0), agent, **schedule)
     for name in ("steps", "trajectories", "n_discrete_states", "q"):
         assert np.array_equal(getattr(dark, name), getattr(faint, name)), name
     assert dark.n_discrete_states.max() <= (len(np.unique(dark_world().rss_dbm)))
