@@ -11,7 +11,7 @@ KILLS ?= 200
 PEERS ?= .venv-peers
 
 .DEFAULT_GOAL := help
-.PHONY: help install maps experiments test test-lowest lint types contracts fuzz torture bench bench-peers bench-growth docs dist clean
+.PHONY: help install maps experiments test test-lowest lint types contracts fuzz torture bench bench-peers bench-growth bench-evaluation docs dist clean
 
 help: ## list these targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
@@ -66,6 +66,9 @@ bench-peers: install ## trace the same plans with Sionna RT and pyroomacoustics,
 
 bench-growth: install ## measure time and memory against cells, rooms and order, for docs/performance.md
 	$(BIN)/python tests/benchmarks/growth.py
+
+bench-evaluation: install ## measure evaluations of known paths beside a new trace, for docs/performance.md
+	$(BIN)/python tests/benchmarks/evaluation.py
 
 docs: install ## build the documentation into docs/_build/html
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html

@@ -1,6 +1,7 @@
 """Lookup tables of the field kernels: slabs, antennas, special functions."""
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -32,14 +33,13 @@ def field_tables(
 ) -> FieldTables:
     """Tabulate materials, antennas and special functions at the transmitter's frequency."""
     turn = np.arange(CIS_STEPS + 1) * (2.0 * np.pi / CIS_STEPS)
+    found = _at_all_angles(slabs, transmitter.frequency_hz)
     return FieldTables(
         wavelength=transmitter.wavelength_m,
         slab_rows=SLAB_TABLE_STEPS + 2,
-        reflection=slab_tables(slabs, transmitter.frequency_hz).reshape(-1, 4),
-        transmission=transmission_tables(slabs, transmitter.frequency_hz).reshape(-1, 4)
-        if through_walls
-        else np.empty((0, 4)),
-        max_reflectance=max_reflectance(slabs, transmitter.frequency_hz).ravel(),
+        reflection=_reflection(found).reshape(-1, 4),
+        transmission=_transmission(found).reshape(-1, 4) if through_walls else np.empty((0, 4)),
+        max_reflectance=_max_reflectance(found).ravel(),
         transition=transition_table(),
         cis=np.column_stack([np.cos(turn), np.sin(turn)]),
         **_antennas(transmitter.antenna, receive_antenna or HalfWaveDipole()),
@@ -119,7 +119,7 @@ def slab_tables(slabs: Sequence[tuple[Material | str, float]], frequency_hz: flo
     SceneError
         Where a material is not known at that frequency.
     """
-    return np.stack([_table(c.r_tm, c.r_te + c.r_tm) for c in _at_all_angles(slabs, frequency_hz)])
+    return _reflection(_at_all_angles(slabs, frequency_hz))
 
 
 def transmission_tables(
@@ -135,16 +135,21 @@ def transmission_tables(
         T is relative to free space across the same thickness, so that a slab of vacuum has
         T = 1: a ray goes straight on through the sheet, and its length holds the phase.
     """
-    return np.stack([_table(c.t_tm, c.t_te - c.t_tm) for c in _at_all_angles(slabs, frequency_hz)])
+    return _transmission(_at_all_angles(slabs, frequency_hz))
 
 
 def both_tables(slabs: Sequence[Slab], frequency_hz: float) -> tuple[Floats, Floats]:
     """Return `slab_tables` and `transmission_tables`, with the coefficients computed once."""
     found = _at_all_angles(slabs, frequency_hz)
-    return (
-        np.stack([_table(c.r_tm, c.r_te + c.r_tm) for c in found]),
-        np.stack([_table(c.t_tm, c.t_te - c.t_tm) for c in found]),
-    )
+    return _reflection(found), _transmission(found)
+
+
+def _reflection(found: Sequence[SlabCoefficients]) -> Floats:
+    return np.stack([_table(c.r_tm, c.r_te + c.r_tm) for c in found])
+
+
+def _transmission(found: Sequence[SlabCoefficients]) -> Floats:
+    return np.stack([_table(c.t_tm, c.t_te - c.t_tm) for c in found])
 
 
 def _at_all_angles(
@@ -170,17 +175,16 @@ def _table(tm: Complexes, difference: Complexes) -> Floats:
     return np.concatenate([columns, columns[-1:]])
 
 
-def max_reflectance(slabs: Sequence[Slab], frequency_hz: float) -> Floats:
+def _max_reflectance(found: Sequence[SlabCoefficients]) -> Floats:
     """Tabulate max(|R_te|^2, |R_tm|^2) over a cosine of incidence and all above (n, steps + 2)."""
-    cos_i = np.append(np.linspace(0.0, 1.0, SLAB_TABLE_STEPS + 1), 1.0)
     rows: list[Floats] = []
-    for slab in slabs:
-        c = slab.material.coefficients(slab.thickness_m, frequency_hz, cos_i)
+    for c in found:
         reflectance = np.maximum(np.abs(c.r_te), np.abs(c.r_tm)) ** 2
-        rows.append(np.maximum.accumulate(reflectance[::-1])[::-1])
+        rows.append(np.maximum.accumulate(np.append(reflectance, reflectance[-1])[::-1])[::-1])
     return np.array(rows)
 
 
+@cache
 def transition_table() -> Floats:
     """Tabulate F(s^2) / s over s (TRANSITION_STEPS + 2, 2), F of Kouyoumjian-Pathak eq. 27.
 

@@ -111,8 +111,18 @@ class TracedSurvey:
         survey: Survey,
         settings: TraceSettings,
         progress: Progress | None = None,
+        *,
+        max_left_out: float = MAX_LEFT_OUT,
     ) -> TracedSurvey:
-        """Trace the paths to a survey's places; errors as of `traced.traced_dbm`."""
+        """Trace the paths to a survey's places; errors as of `traced.traced_dbm`.
+
+        Parameters
+        ----------
+        scene, survey, settings, progress
+            As of `traced.traced_dbm`.
+        max_left_out
+            Largest fraction of the power of a reading whose paths are left out.
+        """
         parts: list[Part] = []
         for k in range(len(survey.transmitters)):
             rows = np.flatnonzero(survey.transmitter == k)
@@ -122,7 +132,7 @@ class TracedSurvey:
                 survey.points[rows],
                 settings.config,
                 receive_antenna=settings.receive_antenna,
-                max_left_out=MAX_LEFT_OUT,
+                max_left_out=max_left_out,
                 threads=settings.threads,
                 max_memory_bytes=settings.max_memory_bytes,
             )

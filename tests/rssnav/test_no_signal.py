@@ -59,9 +59,8 @@ def dark_world(level_dbm: float = -math.inf) -> GridWorld:
 def test_no_signal_is_one_state_that_no_other_reading_has(rule, several) -> None:
     heard_dbm = heard(np.array(several), AGENT_SENSITIVITY_DBM)
     states = states_of(rule, heard_dbm)
-    silent = {
-        s for s, level in zip(states, heard_dbm, strict=True) if level <= AGENT_SENSITIVITY_DBM
-    }
+    is_heard = heard_dbm > AGENT_SENSITIVITY_DBM
+    silent = {s for s, above in zip(states, is_heard, strict=True) if not above}
     others = set(states) - silent
     loud = [s for s, above in zip(states, is_heard, strict=True) if above]
     assert len(silent) <= 1
