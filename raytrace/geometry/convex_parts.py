@@ -1,11 +1,12 @@
 """Faces of the plan view divided into convex parts: triangles, merged where they stay convex."""
 
 from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
-from raytrace.arrays import Floats
+from raytrace.arrays import Floats, Ints
 from raytrace.geometry.chains import Vertex
 from raytrace.geometry.sheets import COINCIDENT_M
 from raytrace.kernels.plan_view import GRAZING_M
@@ -17,7 +18,7 @@ MOST_FLIPS = 10
 """Flips per flat triangle."""
 
 _MANY = 64
-"""Corners from which on it is faster to find the convex hull of a ring first."""
+"""Corners from which on edges are not compared with the corners of their own ring."""
 
 
 def convex_parts(
@@ -110,35 +111,125 @@ def _merged(rings: list[Ring], vertices: Floats, walls: Collection[Edge]) -> lis
     owner = {edge: k for k, ring in enumerate(rings) for edge in edges_of(ring)}
     cuts = [e for e in owner if e[0] < e[1] and e not in walls]
     cuts.sort(key=lambda e: (-np.hypot(*(vertices[e[0]] - vertices[e[1]])), e))
-    alive = dict(enumerate(rings))
+    parts = _Parts(rings, vertices)
     for a, b in cuts:
-        left, right = owner[a, b], owner.get((b, a))
-        if right is None or left == right:
-            continue
-        merged = _joined(alive[left], alive[right], a, b)
-        if len(set(merged)) < len(merged) or not _is_convex(vertices[merged]):
-            continue
-        alive[left] = merged
-        del alive[right], owner[a, b], owner[b, a]
-        owner.update(dict.fromkeys(edges_of(merged), left))
-    return list(alive.values())
+        if (b, a) in owner:
+            parts.join(owner[a, b], owner[b, a], a, b)
+    return parts.rings()
 
 
-def _joined(left: Ring, right: Ring, a: int, b: int) -> Ring:
-    """One ring of two that share the edge a-b (left holds a -> b, right b -> a)."""
-    k, m = left.index(b), right.index(a)
-    from_b_to_a = left[k:] + left[:k]
-    from_a_to_b = right[m:] + right[:m]
-    return from_b_to_a[:-1] + from_a_to_b[:-1]
+@dataclass
+class _Part:
+    """A ring of vertices, without their order.
+
+    Attributes
+    ----------
+    corners
+        (n,) vertex numbers.
+    ahead
+        (n, 2) unit vectors of the edges that start there.
+    members
+        The vertex numbers.
+    first
+        A vertex and the next: where the ring begins.
+    place
+        Number of the ring in the list of all.
+    """
+
+    corners: Ints
+    ahead: Floats
+    members: set[int]
+    first: Edge
+    place: int
 
 
-def _is_convex(corners: Floats) -> bool:
-    """Whether no corner of a ring lies farther than `GRAZING_M` beyond one of its edges."""
-    ahead = np.roll(corners, -1, axis=0) - corners
-    ahead /= np.hypot(*ahead.T)[:, None]
-    farthest = corners
-    if len(corners) > _MANY:  # the corners farthest beyond an edge are those of the convex hull
-        farthest = shapely.get_coordinates(shapely.convex_hull(shapely.linestrings(corners)))
-    offset = farthest[None, :] - corners[:, None]
-    inside = ahead[:, :1] * offset[:, :, 1] - ahead[:, 1:] * offset[:, :, 0]
-    return bool(inside.min() >= -GRAZING_M)
+class _Parts:
+    """Triangles, and the rings they are joined to."""
+
+    def __init__(self, rings: list[Ring], vertices: Floats) -> None:
+        self._vertices = vertices
+        corners = np.array(rings).reshape(-1, 3)
+        ahead = vertices[np.roll(corners, -1, axis=1)] - vertices[corners]
+        ahead /= np.hypot(ahead[..., 0], ahead[..., 1])[..., None]
+        self._parts = {
+            k: _Part(corners[k], ahead[k], set(ring), (ring[0], ring[1]), k)
+            for k, ring in enumerate(rings)
+        }
+        self._root = list(range(len(rings)))
+        self._next: dict[Edge, int] = {}
+        self._previous: dict[Edge, int] = {}
+        for ring in rings:
+            for before, (a, b), after in zip(
+                ring[-1:] + ring[:-1], edges_of(ring), ring[2:] + ring[:2], strict=True
+            ):
+                self._previous[a, b], self._next[a, b] = before, after
+
+    def join(self, left: int, right: int, a: int, b: int) -> None:
+        """Join two rings at an edge, a to b of the left one, where together they are convex."""
+        left, right = self._found(left), self._found(right)
+        if left == right:
+            return
+        one, two = self._parts[left], self._parts[right]
+        small, large = sorted((one.members, two.members), key=len)
+        if len(small & large) > 2 or not self._is_convex(one, two, a, b):
+            return
+        before_a, after_b = self._previous[a, b], self._next[a, b]
+        before_b, after_a = self._previous[b, a], self._next[b, a]
+        self._next[before_a, a], self._previous[a, after_a] = after_a, before_a
+        self._next[before_b, b], self._previous[b, after_b] = after_b, before_b
+        kept = one if large is one.members else two
+        kept.corners, kept.ahead = self._edges_of_both(one, two, a, b)
+        kept.members |= small
+        kept.first, kept.place = (b, after_b), one.place
+        gone, root = (right, left) if kept is one else (left, right)
+        self._root[gone] = root
+        del self._parts[gone]
+
+    @staticmethod
+    def _edges_of_both(one: _Part, two: _Part, a: int, b: int) -> tuple[Ints, Floats]:
+        """Corners and edges without the common one."""
+        of_one, of_two = one.corners != a, two.corners != b
+        return (
+            np.concatenate([one.corners[of_one], two.corners[of_two]]),
+            np.concatenate([one.ahead[of_one], two.ahead[of_two]]),
+        )
+
+    def rings(self) -> list[Ring]:
+        """Vertex numbers of each ring, in order."""
+        found: list[Ring] = []
+        for part in sorted(self._parts.values(), key=lambda part: part.place):
+            ring, edge = [part.first[0]], part.first
+            while edge[1] != ring[0]:
+                ring.append(edge[1])
+                edge = (edge[1], self._next[edge])
+            found.append(ring)
+        return found
+
+    def _found(self, k: int) -> int:
+        """Which ring the ring of a number is part of by now."""
+        while self._root[k] != k:
+            self._root[k] = self._root[self._root[k]]
+            k = self._root[k]
+        return k
+
+    def _is_convex(self, one: _Part, two: _Part, a: int, b: int) -> bool:
+        """Whether no corner lies farther than `GRAZING_M` beyond an edge of what would be joined.
+
+        The edges of large rings, which are convex, are compared with the other's corners only.
+        """
+        if len(one.corners) + len(two.corners) <= _MANY:
+            corners, ahead = self._edges_of_both(one, two, a, b)
+            return self._are_inside(corners, corners, ahead)
+        for part, other, start in ((one, two, a), (two, one, b)):
+            beyond = other.corners[(other.corners != a) & (other.corners != b)]
+            if len(part.corners) == 3:
+                beyond = np.concatenate([beyond, part.corners])
+            edges = part.corners != start
+            if not self._are_inside(beyond, part.corners[edges], part.ahead[edges]):
+                return False
+        return True
+
+    def _are_inside(self, corners: Ints, starts: Ints, ahead: Floats) -> bool:
+        offset = self._vertices[corners][None] - self._vertices[starts][:, None]
+        inside = ahead[:, :1] * offset[:, :, 1] - ahead[:, 1:] * offset[:, :, 0]
+        return bool(inside.min() >= -GRAZING_M)

@@ -223,6 +223,7 @@ def _fill(triangles: Floats, materials: Ints, s: Floats, z: Floats, corners: Flo
     filled = np.full(grid_s.shape, OPEN, dtype=np.int64)
     for material in dict.fromkeys(materials.tolist()):
         sheet = shapely.union_all(shapely.polygons(triangles[materials == material]))
+        shapely.prepare(sheet)
         inside = shapely.contains_xy(sheet, grid_s, grid_z)
         if abs(cell_area[inside].sum() - sheet.area) > 1e-6:
             (x1, y1), (x2, y2) = corners[0], corners[-1]
