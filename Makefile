@@ -71,6 +71,7 @@ bench-evaluation: install ## measure evaluations of known paths beside a new tra
 	$(BIN)/python tests/benchmarks/evaluation.py
 
 docs: install ## build the documentation into docs/_build/html
+	@rm -rf docs/api/generated
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
 
 dist: install ## build wheel and source archive into dist/

@@ -9,6 +9,7 @@ sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
 project = "rssnav"
 author = "The rssnav developers"
+project_copyright = f"2026, {author}"
 version = release = installed_version("rssnav")
 extensions = [
     "myst_parser",
@@ -23,6 +24,7 @@ html_math_renderer = "mathml"
 html_static_path = ["_static", str(files("ziamath") / "fonts" / "STIXTwoMath-Regular.ttf")]
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 3
+html_css_files = ["pages.css"]
 html_theme = "furo"
 html_title = "rssnav"
 exclude_patterns = ["_build", "_extensions", "gallery"]

@@ -53,7 +53,7 @@ class ImportRecord:
     def report(self) -> tuple[str, ...]:
         """All information about the import, one line each."""
         return (
-            *(f"layer {use.name}: {use.n_objects} objects: {use.became}" for use in self.layers),
+            *(f"layer {use.name} ({use.n_objects}): {use.became}" for use in self.layers),
             *(f"assumed {a.key} = {a.value}: {a.why}" for a in self.assumed),
             *(str(change) for change in self.changes),
             *(f"warning: {sentence}" for sentence in self.warnings),

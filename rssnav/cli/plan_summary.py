@@ -30,7 +30,11 @@ def print_summary(plan: FloorPlan) -> None:
         [
             ("plan", plan.name),
             ("size", f"{size_text(plan)}, {plan.height_m:g} m high, {plan.outline.area:g} m²"),
-            ("walls", f"{len(plan.walls)} straight pieces with {count_openings(plan)} openings"),
+            (
+                "walls",
+                f"{_counted(len(plan.walls), 'straight piece')} with "
+                f"{_counted(count_openings(plan), 'opening')}",
+            ),
             ("materials", ", ".join(_materials(plan))),
             *((f"transmitter {t.id}", f"{point_text(t.position)} m") for t in plan.transmitters),
             *(
@@ -45,6 +49,10 @@ def print_summary(plan: FloorPlan) -> None:
 def _materials(plan: FloorPlan) -> tuple[str, ...]:
     """Names of a plan's materials, each once."""
     return tuple(dict.fromkeys(sheet.name for sheet in plan.to_mesh().materials))
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
 
 
 def count_openings(plan: FloorPlan) -> int:

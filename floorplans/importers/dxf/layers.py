@@ -72,7 +72,7 @@ class Layers:
             of = f" of {meaning.material}" if meaning.material else ""
             parts.append(f"{meaning.kind}s{of}")
         if n_symbols:
-            parts.append(f"{n_symbols} blocks of doors and windows")
+            parts.append(f"{n_symbols} block{'s' * (n_symbols != 1)} of doors and windows")
         why = self.why.get(name, "")
         return (", ".join(parts) or "left out") + (f" ({why})" if why else "")
 

@@ -408,7 +408,7 @@ def test_a_unit_that_is_unknown_is_asked_for():
 def test_the_report_states_layers_assumptions_and_changes():
     layers = (LayerUse("A-WALL", 4, "walls"),)
     result = made(replace(with_walls(RawWall((30, 20), (31, 20))), layers=layers, notes=("so so",)))
-    assert "layer A-WALL: 4 objects: walls" in result.report
+    assert "layer A-WALL (4): walls" in result.report
     assert "(20, 0): wall of 1.00 m outside the outline dropped" in result.report
     assert result.report[-1] == "so so"
 

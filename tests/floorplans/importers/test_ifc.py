@@ -115,7 +115,7 @@ def test_written_plan_reads_back_and_states_what_was_assumed(house_file) -> None
     assert loads(text) == imported.plan
     assert "assumed: the file states no source" in text
     assert any('material "Cement render" = concrete' in line for line in imported.report)
-    assert any(line == "layer IfcWall: 5 objects: walls" for line in imported.report)
+    assert any(line == "layer IfcWall (5): walls" for line in imported.report)
 
 
 def test_user_says_what_a_material_is(house_file) -> None:

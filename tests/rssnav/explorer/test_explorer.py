@@ -274,7 +274,7 @@ def test_an_uploaded_drawing_keeps_its_name_and_shows_its_report(session, tmp_pa
     page.refresh()
     assert session.plan.name == "My <flat>, büro"
     shown = panel._report.object
-    assert "layer WINDOW: 5 objects: 5 blocks of doors and windows" in shown
+    assert "layer WINDOW (5): 5 blocks of doors and windows" in shown
     assert "assumed height_m = 3" in shown
     session.open_builtin("flat")
     page.refresh()
