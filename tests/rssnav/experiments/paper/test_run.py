@@ -250,7 +250,7 @@ def test_an_interrupted_training_goes_on(tmp_path, world, monkeypatch):
     monkeypatch.undo()
     result, trained = training_plan(tmp_path, said).result(KEY, world)
     assert trained
-    assert "continuing from 1 of 2 runs" in said[-1]
+    assert "resuming from 1 of 2 runs" in said[-1]
     np.testing.assert_array_equal(result.steps, whole.steps)
 
 
