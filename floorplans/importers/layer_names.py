@@ -31,15 +31,16 @@ T = TypeVar("T")
 
 _WORDS: Lists[Kind] = (
     ("ignore", (
-        "furn", "mobel", "moebel", "meubl", "mueble", "mobil", "arred", "text", "txt", "dim",
+        "furn", "mobel", "mobl", "moeb", "meubl", "mueble", "mobil", "arred", "text", "txt", "dim",
         "anno", "hatch", "schraff", "defpoint", "viewport", "vport", "title", "ttlb", "demo ",
         "demol", "label", "iden ", "nplt ", "note ", "notes ", "void", "cote ", "cotes ", "cotat",
-        "bemass", "acot", "skyl", "tremie", "overhead", "ovhd", "abov ", "above ",
+        "bemass", "beschrift", "acot", "skyl", "tremie", "overhead", "ovhd", "abov ", "above ",
     )),
     ("door", (
-        "door", "tur ", "turen ", "turbl", "turzarg", "*haustur", "*innentur", "*zimmertur",
-        "*aussentur", "*schiebetur", "*eingangstur", "tuer", "*tuer ", "*tueren ", "tor ", "tore ",
-        "porte ", "porta ", "portes ", "portas ", "huisser", "menuis", "puert", "carpint", "infiss",
+        "door", "tur ", "turen ", "turbl", "turrahm", "turzarg", "*haustur", "*innentur",
+        "*zimmertur", "*aussentur", "*schiebetur", "*eingangstur", "tuer", "*tuer ", "*tueren ",
+        "tor ", "tore ", "porte ", "porta ", "portes ", "portas ", "huisser", "menuis",
+        "puert", "carpint", "infiss",
         "serrament", "esquadr", "deur", "kozijn", "dorr", "dor ", "dore ", "ovi ", "ovet ", "drzwi",
         "dvere", "kapi", "двер", "gate",
     )),
@@ -61,7 +62,8 @@ _WORDS: Lists[Kind] = (
     )),
     ("window", ("glaz", "vitr", "verri")),
     ("ignore", (
-        "sheet", "frame", "grid", "axis", "axe", "achs", "patt", "symb", "plant", "tree", "san ",
+        "sheet", "frame", "*rahmen ", "plankopf", "schriftf", "schriftk",
+        "grid", "axis", "axe", "achs", "patt", "symb", "plant", "tree", "san ",
         "sanit", "plumb", "fixt", "equip", "light", "elec", "hvac", "duct", "pipe", "stair",
         "trepp", "escal", "floor", "boden", "ceil", "decke", "roof", "dach", "area", "room", "raum",
         "space", "zone", "rail", "appl", "cabinet", "casework", "logo", "clng", "flor", "evtr",

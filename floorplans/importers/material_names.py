@@ -29,7 +29,7 @@ _MATERIAL_WORDS: Lists[str] = (
     )),
     ("plasterboard", (
         "plaster", "gyps", "gips", "dryw", "placo", "putz", "cartong", "yeso", "gkb", "trockenb",
-        "*gips",
+        "*gips", "*putz ",
     )),
     ("glass", ("glas", "glaz", "verre", "vidri", "vetro", "curtain", "szkl", "*glas ", "vitr")),
     ("wood", (
@@ -49,7 +49,7 @@ _LAYER_WORDS: Lists[str] = (
 )  # fmt: skip
 """Materials of layers of a wall that are no walls by themselves."""
 
-_STUD_WORDS = ("stud ", "studs ", "furr", "framing", "stander", "staender", "ossat", "montant")
+_STUD_WORDS = ("stud ", "studs ", "furr", "framing", "*stander", "*staender", "ossat", "montant")
 _CAVITY_WORDS = (
     *_STUD_WORDS, "studwork", "joist", "rafter", "batten", "batt ", "air ", "airg", "airs", "airl",
     "cavit", "void", "gap ", "*insul", "*wool", "*wolle", "rockw", "fibergl", "fibregl", "foam",
@@ -117,10 +117,13 @@ def full_name(words: Sequence[str]) -> str | None:
 
 def words_of(name: str) -> list[str]:
     """Words of a name in lower case without accents, split also at a change to upper case."""
-    spaced = re.sub(r"(?<=[^\W\d_A-Z])(?=[A-Z])", " ", name)
-    plain = unicodedata.normalize("NFKD", spaced.translate(_PLAIN))
+    plain = unicodedata.normalize("NFKD", name.translate(_PLAIN))
     letters = "".join(c for c in plain if not unicodedata.combining(c))
-    return re.findall(r"[^\W\d_]+", letters.casefold())
+    spaced = "".join(
+        f" {c}" if before.islower() and c.isupper() else c
+        for before, c in zip(f" {letters}", letters, strict=False)
+    )
+    return re.findall(r"[^\W\d_]+", spaced.casefold())
 
 
 def first_match(words: Sequence[str], lists: Lists[T]) -> T | None:

@@ -74,6 +74,21 @@ class Model:
             spatial.assign_container(self.file, products=[wall], relating_structure=self.storey)
         return wall
 
+    def add_column(self, at: Point, width_m: float, height_m: float = 2.7, is_round: bool = False):
+        f, metre = self.file, self.metre
+        column = root.create_entity(f, ifc_class="IfcColumn")
+        axes = f.createIfcAxis2Placement2D(f.createIfcCartesianPoint((0.0, 0.0)))
+        if is_round:
+            profile = f.createIfcCircleProfileDef("AREA", None, axes, width_m / 2 * metre)
+        else:
+            profile = f.createIfcRectangleProfileDef(
+                "AREA", None, axes, width_m * metre, width_m * metre
+            )
+        self._give_body(column, profile, height_m)
+        self._place(column, at, (1.0, 0.0), 0.0)
+        spatial.assign_container(f, products=[column], relating_structure=self.storey)
+        return column
+
     def add_wall_of_faces(self, start: Point, end: Point, thickness_m: float, height_m: float):
         """Add a wall along x or y whose body is six faces."""
         wall = root.create_entity(self.file, ifc_class="IfcWall")

@@ -14,6 +14,9 @@ from floorplans.importers.draft import RawWall, walls_along
 WALL_GAP_M = 0.8
 """Rooms nearer to each other than this have a wall between them [m]."""
 
+_WITHIN = 0.5
+"""A room overlapped by more than this fraction of its area lies within the other."""
+
 
 def walls_of_rooms(
     rooms: Sequence[Polygon], is_open: Sequence[bool], tolerance_m: float
@@ -53,7 +56,15 @@ def _borders(
     tree = shapely.STRtree(list(rooms))
     near = tree.query(list(rooms), predicate="dwithin", distance=tolerance_m).T.tolist()
     pairs = [(i, j) for i, j in near if i < j and not (is_open[i] and is_open[j])]
-    return [rooms[i].boundary.intersection(rooms[j].buffer(tolerance_m)) for i, j in pairs]
+    return [_border(rooms[i], rooms[j], tolerance_m) for i, j in pairs]
+
+
+def _border(one: Polygon, other: Polygon, tolerance_m: float) -> BaseGeometry:
+    """Section of the edge of one room along the other; of a room within another, its own edge."""
+    small, large = sorted((one, other), key=lambda room: room.area)
+    if small.intersection(large).area > _WITHIN * small.area:
+        one, other = small, large
+    return one.boundary.intersection(other.buffer(tolerance_m))
 
 
 def _closed(area: BaseGeometry, gap_m: float) -> BaseGeometry:

@@ -303,9 +303,9 @@ def _loose_openings(
         openings += [o for o in found if o is not None and _is_in_wall(o, area)]
     for layer in (*layers.of("window"), *layers.of("door")):
         curves = content.curves[layer]
-        leaves = [curve.swing for curve in curves if curve.swing is not None]
-        straight = [curve for curve in curves if curve.swing is None]
-        for cluster in loose_lines(straight, "window"):
+        leaves = door_swings(curves)
+        others = [curve for curve in curves if curve.swing not in leaves]
+        for cluster in loose_lines(others, "window"):
             if _has_leaf(cluster.lines, leaves):
                 continue
             if cluster.opening is not None and _is_in_wall(cluster.opening, area):

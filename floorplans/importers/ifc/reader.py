@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import warnings
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from math import atan2, degrees
@@ -24,6 +24,7 @@ from shapely.geometry.base import BaseGeometry
 from floorplans.errors import PlanError
 from floorplans.georeference import GeoOrigin
 from floorplans.importers.draft import Draft, ImportOptions, LayerUse, RawOpening
+from floorplans.importers.ifc.columns import is_in_wall, read_column
 from floorplans.importers.ifc.curves import Entity
 from floorplans.importers.ifc.file import Model, Storey, open_model, scale_of, storey_of
 from floorplans.importers.ifc.materials import Materials
@@ -86,6 +87,7 @@ def _read_storey(model: Model, path: Path, options: ImportOptions) -> Draft:
     materials = Materials(scale.metre, options.layers, options.wall_material)
     read = [read_wall(wall, floor_m, scale, materials) for wall in storey.walls]
     walls = [wall for wall in read if wall is not None]
+    columns, remarks = _columns(storey, walls, scale, materials)
     slabs = _slabs(model, storey, scale)
     height_m = options.height_m or _ceiling(slabs, floor_m) or _highest(walls)
     floor = next((e for e, body in slabs if abs(body.z_max - floor_m) < _SAME_CEILING_M), None)
@@ -100,7 +102,7 @@ def _read_storey(model: Model, path: Path, options: ImportOptions) -> Draft:
         name=" ".join(f"{path.stem} {storey.name}".split()),
         walls=tuple(
             replace(piece, height_m=_height(wall.top_m, height_m))
-            for wall in walls
+            for wall in (*walls, *columns)
             for piece in wall.pieces
         ),
         openings=tuple(_within(loose, walls, height_m)),
@@ -109,11 +111,33 @@ def _read_storey(model: Model, path: Path, options: ImportOptions) -> Draft:
         ceiling_material=None if ceiling is None else materials.of_slab(ceiling),
         georeference=_georeference(model),
         notes=tuple(unmatched(options.layers, materials.names)),
-        layers=tuple(_uses(storey, read)),
+        layers=tuple(_uses(storey, read, remarks)),
         materials=materials.own,
         assumed=tuple(materials.assumed()),
         original=_original(storey, scale),
     )
+
+
+def _columns(
+    storey: Storey, walls: Sequence[ReadWall], scale: Scale, materials: Materials
+) -> tuple[list[ReadWall], Counter[str]]:
+    """Columns, and what is to be said about how many of them."""
+    pieces = [piece for wall in walls for piece in wall.pieces]
+    columns: list[ReadWall] = []
+    remarks: Counter[str] = Counter()
+    for element in storey.elements:
+        if not element.is_a("IfcColumn"):
+            continue
+        column = read_column(element, storey.elevation_m, scale, materials)
+        if column is None:
+            remarks["thin, or without a readable shape on this floor, left out"] += 1
+        elif pieces and is_in_wall(column, pieces):
+            remarks["part of walls, left out"] += 1
+        else:
+            columns.append(column)
+            if any(side.material is None for side in column.pieces):
+                remarks["of unknown material, as walls of their thickness"] += 1
+    return columns, remarks
 
 
 def _original(storey: Storey, scale: Scale) -> Original:
@@ -221,13 +245,17 @@ def _angle_deg(parts: Sequence[int]) -> float:
     return sum(part / unit for part, unit in zip(parts, units, strict=False))
 
 
-def _uses(storey: Storey, read: Sequence[ReadWall | None]) -> Iterator[LayerUse]:
+def _uses(
+    storey: Storey, read: Sequence[ReadWall | None], columns: Mapping[str, int]
+) -> Iterator[LayerUse]:
     """Yield what became of each class of elements."""
     unread = Counter(wall.is_a() for wall, got in zip(storey.walls, read, strict=True) if not got)
     for kind, count in sorted(Counter(element.is_a() for element in storey.elements).items()):
         became = _BECAME.get(kind, "left out")
         if unread[kind]:
             became += f"; {unread[kind]} without a readable shape, or not on this floor, left out"
+        if kind.startswith("IfcColumn"):
+            became += "".join(f"; {n} {remark}" for remark, n in columns.items())
         yield LayerUse(kind, count, became)
 
 
@@ -236,6 +264,8 @@ _BECAME = {
     "IfcWallStandardCase": "walls",
     "IfcWallElementedCase": "walls",
     "IfcCurtainWall": "walls of glass",
+    "IfcColumn": "columns",
+    "IfcColumnStandardCase": "columns",
     "IfcOpeningElement": "openings",
     "IfcDoor": "doors",
     "IfcWindow": "windows",

@@ -55,7 +55,7 @@ def read_wall(wall: Entity, floor_m: float, scale: Scale, materials: Materials) 
     materials : Materials
         Those of the model.
     """
-    parts = _bodies_of_parts(wall, scale)
+    parts = bodies_of_parts(wall, scale)
     top_m = max((body.z_max - floor_m for body in parts), default=np.inf)
     foot_m = min((body.z_min - floor_m for body in parts), default=0.0)
     if top_m < MIN_TOP_M or foot_m > MAX_FOOT_M:
@@ -91,14 +91,14 @@ def read_filling(filling: Entity, floor_m: float, scale: Scale) -> RawOpening | 
     )  # fmt: skip
 
 
-def _bodies_of_parts(wall: Entity, scale: Scale) -> list[Body]:
-    """Bodies of a wall, or of its parts."""
+def bodies_of_parts(element: Entity, scale: Scale) -> list[Body]:
+    """Bodies of an element, or of its parts."""
     from ifcopenshell.util.element import get_decomposition
 
-    found = bodies(wall, scale)
-    if found or not wall.IsDecomposedBy:
+    found = bodies(element, scale)
+    if found or not element.IsDecomposedBy:
         return found
-    return [body for part in get_decomposition(wall) for body in bodies(part, scale)]
+    return [body for part in get_decomposition(element) for body in bodies(part, scale)]
 
 
 Line = tuple[tuple[float, float], tuple[float, float], float | None]

@@ -156,6 +156,34 @@ def test_lines_of_windows_are_openings_in_walls_and_panes_otherwise(tmp_path: Pa
     assert [o.width_m for _, o in openings(plan) if o.kind == "window"] == pytest.approx([1.5])
 
 
+def test_curved_glazing_beside_curved_walls_loses_nothing(tmp_path: Path):
+    doc = draw.new()
+    space = doc.modelspace()
+    for begin, end in ((130, 360 + 50), (50, 130)):
+        glazed = begin == 50
+        for radius in (5300, 5350) if glazed else (5000, 5300):
+            layer = "GLAZING" if glazed else "WALL"
+            space.add_arc((0, 0), radius, begin, end, dxfattribs={"layer": layer})
+    for angle in (50, 130):
+        ends = [5 * cos(radians(angle)), 5 * sin(radians(angle))]
+        draw.add_lines(space, [(tuple(ends), tuple(1.06 * x for x in ends))], "WALL")
+    result = imported(doc, tmp_path)
+    glass_m = sum(w.length_m for w in result.plan.walls if w.material == "glass")
+    solid_m = sum(w.length_m for w in result.plan.walls if w.material != "glass")
+    assert glass_m == pytest.approx(radians(80) * 5.325, rel=0.05)
+    assert solid_m == pytest.approx(radians(280) * 5.15, rel=0.05)
+    assert result.plan.outline.area == pytest.approx(pi * 5.2**2, rel=0.03)
+
+
+def test_a_drawing_whose_walls_are_in_another_file_is_not_its_frame(tmp_path: Path):
+    doc = draw.new()
+    doc.add_xref_def("storey.dwg", "storey")
+    doc.modelspace().add_blockref("storey", (0, 0))
+    draw.add_rings(doc.modelspace(), [draw.rectangle(0, 0, 20, 12)], "PLANRAHMEN")
+    with pytest.raises(PlanError, match="blocks storey are in other files: bind these"):
+        imported(doc, tmp_path)
+
+
 def test_round_walls_become_chords_within_the_tolerance(tmp_path: Path):
     doc = draw.new()
     for radius in (5000, 5300):
@@ -277,6 +305,13 @@ def test_layers_that_are_off_are_left_out(tmp_path: Path):
         ("A-WALL-WOOD-STUD", Meaning("wall", "plasterboard")),
         ("A-WALL-METAL", Meaning("wall", "metal")),
         ("Haustüren", Meaning("door")),
+        ("TÜREN", Meaning("door")),
+        ("TÜRRAHMEN", Meaning("door")),
+        ("AUSSENWÄNDE", Meaning("wall")),
+        ("FENÊTRES", Meaning("window")),
+        ("MÖBLIERUNG", Meaning("ignore")),
+        ("METALLSTÄNDERWAND", Meaning("wall", "plasterboard")),
+        ("PLANRAHMEN", Meaning("ignore")),
         ("TÜRKIS", Meaning(None)),
         ("Struktur", Meaning(None)),
         ("Dachfenster", Meaning("ignore")),

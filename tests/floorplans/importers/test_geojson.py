@@ -170,6 +170,17 @@ def test_rooms_that_touch_have_walls_around_and_between(imported) -> None:
     ]
 
 
+@pytest.mark.parametrize("order", [1, -1])
+def test_rooms_within_a_hall_have_walls_whichever_comes_first(imported, order: int) -> None:
+    rooms = [(box(0, 0, 20, 10), "walkway"), (box(0, 0, 4, 10), "restroom"),
+             (box(12, 4, 14, 6), "elevator")]  # fmt: skip
+    units = [feature(room, feature_type="unit", category=what) for room, what in rooms[::order]]
+    plan = imported(collection(*units, crs=None))
+    inner = [w for w in plan.walls if 0 < w.point_at(w.length_m / 2)[0] < 20]
+    inner = [w for w in inner if 0 < w.point_at(w.length_m / 2)[1] < 10]
+    assert sum(w.length_m for w in inner) == pytest.approx(10 + 8, abs=0.1)
+
+
 def test_rooms_with_gaps_have_walls_as_thick_as_the_gaps(imported) -> None:
     rooms = [box(0, 0, 4, 6), box(4.2, 0, 10, 6)]
     plan = imported(collection(*(feature(room, indoor="room") for room in rooms), crs=None))

@@ -12,6 +12,7 @@ from zipfile import ZIP_DEFLATED, ZipFile
 import pytest
 from ifc_models import HOUSE, Model, Point, house
 from ifcopenshell.api.owner import settings
+from shapely.geometry import Polygon
 
 from floorplans import PlanError, loads
 from floorplans.importers import ImportOptions, import_plan
@@ -298,6 +299,39 @@ def test_window_in_a_curved_wall_covers_several_chords(tmp_path) -> None:
     assert (across[0], across[-1]) == pytest.approx((-2.5, 2.5), abs=0.02)
     arc_m = 2 * 4.0 * asin(2.5 / 4.0)
     assert sum(o.width_m for _, o in panes) == pytest.approx(arc_m, abs=0.05)
+
+
+def test_columns_are_solid_rings_unless_they_are_part_of_a_wall(tmp_path) -> None:
+    model = Model()
+    model.add_storey("Hall")
+    model.add_ring(HALL, thickness_m=0.3)
+    standing = model.add_column((2.0, 2.0), 0.4)
+    model.set_material(standing, "Stahlbeton C30/37")
+    model.add_column((4.0, 2.0), 0.08)
+    model.add_column((6.0, 2.0), 0.4)
+    imported = import_plan(model.write(tmp_path / "hall.ifc"))
+    ring = [w for w in imported.plan.walls if w.length_m == pytest.approx(0.4)]
+    assert {(w.material, w.thickness_m) for w in ring} == {("concrete", 0.2)}
+    centre_x, centre_y = (sum(w.start[k] for w in ring) / 4 for k in (0, 1))
+    assert (centre_x, centre_y) == pytest.approx((2.0, 2.0))
+    assert len(ring) == 4
+    (use,) = (use for use in imported.layers if use.name == "IfcColumn")
+    assert use.became == (
+        "columns; 1 thin, or without a readable shape on this floor, left out; "
+        "1 part of walls, left out"
+    )
+    assert len(imported.plan.walls) == 8
+
+
+def test_round_column_is_as_wide_as_it_is(tmp_path) -> None:
+    model = Model("MILLI")
+    model.add_storey("Hall")
+    model.add_ring(HALL)
+    model.add_column((3.0, 2.0), 0.6, is_round=True)
+    plan = import_plan(model.write(tmp_path / "hall.ifc")).plan
+    ring = [w for w in plan.walls if w.length_m < 0.5]
+    area = Polygon([w.start for w in ring]).convex_hull.area
+    assert area == pytest.approx(pi * 0.3**2, rel=0.1)
 
 
 def test_curtain_wall_without_material_is_glass(tmp_path) -> None:
