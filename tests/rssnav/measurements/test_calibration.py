@@ -100,7 +100,7 @@ def test_the_calibrated_plan_gives_the_levels_of_the_fit(
 
 def test_the_page_says_what_was_found(found: Calibration, survey: Survey) -> None:
     page = calibration_page(room(), survey, found, SETTINGS)
-    assert f"{found.space.after.sigma_db:.2f} dB off with fitted ones" in page
+    assert f"{found.space.after.sigma_db:.2f} dB with fitted ones" in page
     assert "plasterboard" in page
     assert page.count("data:image/png;base64,") == 1
     assert not [part for part in ('src="http', "href=") if part in page]
