@@ -1,8 +1,10 @@
 """The map of the code shows the folders there are, and the files that the pages name exist."""
 
+import os
 import re
 
 import pytest
+import yaml
 from documents import PAGES, ROOT
 
 PACKAGES = ("atomicfiles", "floorplans", "raytrace", "rssnav")
@@ -35,3 +37,21 @@ def test_every_path_it_names_exists(page) -> None:
     text = page.read_text("utf-8")
     named = re.findall(r"`((?:docs|floorplans|raytrace|rssnav|tests)/[a-z0-9_/.]*)`", text)
     assert [path for path in named if not (ROOT / path).exists()] == []
+
+
+def test_the_hosted_check_runs_the_project_s_own() -> None:
+    folder = ROOT / ".github"
+    workflow = yaml.safe_load((folder / "workflows" / "ci.yml").read_text("utf-8"))
+    (job,) = workflow["jobs"].values()
+    (command,) = [step["run"] for step in job["steps"] if "run" in step]
+    assert os.access(ROOT / command, os.X_OK)
+
+
+def test_issue_forms_ask_for_something_under_a_name() -> None:
+    forms = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*_*.yml"))
+    assert forms
+    for path in forms:
+        form = yaml.safe_load(path.read_text("utf-8"))
+        assert form["name"]
+        assert form["description"]
+        assert all(part["attributes"]["label"] for part in form["body"])

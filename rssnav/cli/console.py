@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
+from datetime import timedelta
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
@@ -13,11 +14,11 @@ from rich.console import Console
 from rich.progress import (
     BarColumn,
     Progress,
+    ProgressColumn,
+    Task,
     TaskID,
     TaskProgressColumn,
     TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
 )
 from rich.table import Table
 from rich.text import Text
@@ -143,12 +144,21 @@ def _bars(console: Console) -> Progress:
         TextColumn("{task.description}", markup=False),
         BarColumn(),
         TaskProgressColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        _Times(),
         console=console,
         transient=True,
     )
+
+
+class _Times(ProgressColumn):
+    """The time that has passed, and the time that is left where it can be told."""
+
+    def render(self, task: Task) -> Text:
+        passed, left = task.elapsed, task.time_remaining
+        text = "" if passed is None else str(timedelta(seconds=int(passed)))
+        if left is not None and not task.finished:
+            text += f", {timedelta(seconds=int(left))} left"
+        return Text(text)
 
 
 class _Bars:
