@@ -118,7 +118,7 @@ def placed(imported: Made, draft: Draft, angle_deg: float) -> Made:
     origin = imported.origin if draft.origin else Origin(x, y, imported.origin.frame)
     note = (
         f"the walls stand at {angle_deg:g} degrees to the drawing's axes: the plan has axes along "
-        "its walls, and exports are turned back"
+        "its walls, and exports are rotated back"
     )
     return replace(
         imported,
