@@ -16,6 +16,10 @@ from floorplans.walls import TOLERANCE_M
 _NEAREST_ENDS = 4
 _NEAREST_WALLS = 8
 _SPREAD = np.cos(np.pi / 4)
+_CLEAR_M = 1e-3
+_CLEAR_FRACTION = 5e-4
+"""A link that comes as near to a wall between its ends, in metres or as a fraction of its length,
+runs along it or past its end."""
 _FIRST_RADIUS_M = 0.25
 
 Segments = NDArray[np.float64]
@@ -211,13 +215,13 @@ def _first_of_each(which: NDArray[np.int64], value: NDArray[np.float64]) -> NDAr
 
 
 def _unobstructed(links: Segments, tree: shapely.STRtree) -> NDArray[np.bool_]:
-    """Which links have no wall between their ends."""
+    """Which links neither meet nor nearly touch a wall between their ends."""
     step = 0.01 * (links[:, 1] - links[:, 0])
     inner = np.stack([links[:, 0] + step, links[:, 1] - step], axis=1)
+    clear_m = np.minimum(_CLEAR_M, _CLEAR_FRACTION * link_lengths(links))
+    lines = np.array(shapely.linestrings(inner), dtype=np.object_)
     clear = np.ones(len(links), dtype=np.bool_)
-    clear[tree.query(np.array(shapely.linestrings(inner), dtype=np.object_), "intersects")[0]] = (
-        False
-    )
+    clear[tree.query(lines, "dwithin", distance=clear_m)[0]] = False
     return clear
 
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
+import shapely.ops
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -55,10 +56,25 @@ def test_each_free_end_is_linked_to_the_nearest_wall(seed: int):
         others = np.delete(lines, i // 2)
         gaps_m = shapely.distance(end, others)
         nearest = int(np.argmin(gaps_m))
-        if not 1e-4 < gaps_m[nearest] <= MAX_GAP_M:
+        shortest = shapely.shortest_line(end, others[nearest])
+        inner = shapely.ops.substring(shortest, 0.01, 0.99, normalized=True)
+        is_free = 1e-4 < gaps_m[nearest] <= MAX_GAP_M
+        if not is_free or shapely.distance(inner, lines).min() < 2e-3:
             continue
         at_end = np.hypot(*(links - np.array([end.x, end.y])).transpose(2, 0, 1)).min(axis=1) < 1e-9
         assert np.isclose(link_lengths(links[at_end]), gaps_m[nearest]).any()
+
+
+@pytest.mark.parametrize("offset_m", [0.0, 1e-5, 5e-4])
+def test_no_link_runs_along_a_wall_or_past_its_end(offset_m: float):
+    sides = enumerate([(0, 4), (6, 9), (12, 17)])
+    row = [[(a, k * offset_m), (b, k * offset_m)] for k, (a, b) in sides]
+    ends = [*row, [(17, 2 * offset_m), (17, 13)]]
+    lines = centre_lines(walls_of(np.array(ends)))
+    links = gap_links(lines, 30.0)
+    inner = shapely.linestrings(links + 0.02 * (links[:, ::-1] - links))
+    assert len(links)
+    assert shapely.distance(inner[:, None], lines[None]).min() > 1e-3
 
 
 @settings(max_examples=20, deadline=None)
