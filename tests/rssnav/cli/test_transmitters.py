@@ -83,7 +83,11 @@ def test_one_is_chosen_by_id_or_by_its_place(plan, tmp_path) -> None:
     [
         ("map", ("--from", "north"), "no transmitter 'north': it has west, east"),
         ("map", ("--from", "9,9,1"), "(9, 9, 1) is not inside"),
-        ("map", ("--antenna", "yagi"), "'yagi' is not isotropic, dipole or the path"),
+        (
+            "map",
+            ("--antenna", "yagi"),
+            "'yagi' is not isotropic, dipole, monopole, patch, sector or the path",
+        ),
         ("paths", (), "choose one of the transmitters west, east"),
         ("paths", ("--from", "all"), "choose one of the transmitters west, east"),
     ],
