@@ -6,9 +6,10 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import shapely
+from shapely.geometry import Polygon
 
 from floorplans.checks.plan import faults, geos_flags_ignored
-from floorplans.repair.geometry import at_text
+from floorplans.repair.geometry import at_text, tidy_point
 from floorplans.repair.walls import REACH_M, Change, repair_walls
 from floorplans.toml.writer import dumps
 from floorplans.unchecked import UncheckedPlan
@@ -87,4 +88,21 @@ def _outline_on_walls(plan: UncheckedPlan, reach_m: float) -> tuple[UncheckedPla
         Change("moved", f"corner of the outline moved to {at_text(to)}", corner)
         for corner, to in moves.items()
     ]
-    return (replace(plan, outline=outline) if outline.is_valid else plan), changes
+    if not outline.is_valid:
+        return plan, []
+    return _start_on_cells(replace(plan, outline=outline), plan.outline, changes)
+
+
+def _start_on_cells(
+    plan: UncheckedPlan, old: Polygon, changes: list[Change]
+) -> tuple[UncheckedPlan, list[Change]]:
+    """Move the start with the lower left corner of the outline, where the cells of maps begin.
+
+    A start at the centre of a cell stays one, whatever the cells' size.
+    """
+    (x0, y0, *_), (x1, y1, *_) = old.bounds, plan.outline.bounds
+    if plan.start is None or (x0, y0) == (x1, y1):
+        return plan, changes
+    start = tidy_point(plan.start[0] + x1 - x0, plan.start[1] + y1 - y0)
+    moved = Change("moved", "start moved with the cells of maps", plan.start, start)
+    return replace(plan, start=start), [*changes, moved]

@@ -88,7 +88,7 @@ class MapFigure:
         self.model = _empty_figure()
         self._draw_floor(plan)
         self._mapper = LinearColorMapper(
-            palette=Viridis256, low=-1.0, high=0.0, low_color="#00000000"
+            palette=Viridis256, low=-1.0, high=0.0, low_color="#00000000", nan_color="#00000000"
         )
         self._image = ColumnDataSource({name: [] for name in ("rss", "x", "y", "dw", "dh")})
         self._uncovered = ColumnDataSource(dict(_EMPTY_POINTS))
@@ -113,15 +113,16 @@ class MapFigure:
         covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
         if covered.size:
             self._mapper.update(low=float(covered.min()), high=float(covered.max()) + 1e-9)
+        inside = cells_inside(self._plan, grid)
         self._image.data = {
-            **{name: [values] for name, values in _layers(radio_map).items()},
+            **{name: [values] for name, values in _layers(radio_map, inside).items()},
             "x": [grid.x[0] - half],
             "y": [grid.y[0] - half],
             "dw": [grid.x[-1] - grid.x[0] + 2 * half],
             "dh": [grid.y[-1] - grid.y[0] + 2 * half],
         }
         self._hover.tooltips = _tooltips(radio_map)
-        uncovered = ~np.isfinite(radio_map.rss_dbm) & cells_inside(self._plan, grid)
+        uncovered = ~np.isfinite(radio_map.rss_dbm) & inside
         dark = grid.points()[uncovered.ravel()]
         self._uncovered_cells.glyph.update(width=grid.cell_size_m, height=grid.cell_size_m)
         self._uncovered.data = {"x": dark[:, 0], "y": dark[:, 1]}
@@ -340,24 +341,29 @@ def _empty_figure() -> figure:
     return model
 
 
-def _layers(radio_map: RadioMap) -> dict[str, NDArray[Any]]:
-    """Layers (n_y, n_x) of a map that the tooltip shows, by name."""
-    layers = {"rss": radio_map.rss_dbm, "path_count": radio_map.path_count}
-    spread_s = radio_map.delay_spread_s
-    return layers if spread_s is None else {**layers, "delay_spread_s": spread_s}
+def _layers(radio_map: RadioMap, inside: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
+    """Layers (n_y, n_x) of a map that the tooltip shows, by name.
+
+    NaN, which no map holds, tells the tooltip that a cell is outside the building or in a column.
+    """
+    layers = {"rss": np.where(inside, radio_map.rss_dbm, np.nan)}
+    if radio_map.delay_spread_s is not None:
+        layers["delay_spread_s"] = np.where(inside, radio_map.delay_spread_s, np.nan)
+    return {**layers, "path_count": radio_map.path_count}
 
 
 def _written_in(unit: str, factor: float = 1.0) -> CustomJSHover:
-    """Return a tooltip format with a unit; an infinite number means no path."""
+    """Return a tooltip format with a unit; an infinite number means no path, NaN outside."""
     return CustomJSHover(
-        code=f"return isFinite(value) ? ({factor!r} * value).toFixed(1) + ' {unit}' : 'no path'"
+        code="if (Number.isNaN(value)) return 'outside'; "
+        f"return isFinite(value) ? ({factor!r} * value).toFixed(1) + ' {unit}' : 'no path'"
     )
 
 
 def _tooltips(radio_map: RadioMap) -> list[tuple[str, str]]:
     """Rows of the tooltip."""
     rows = [("RSS", "@rss{custom}"), ("paths", "@path_count{0,0}")]
-    if "delay_spread_s" in _layers(radio_map):
+    if radio_map.delay_spread_s is not None:
         rows.append(("delay spread", "@delay_spread_s{custom}"))
     return [*rows, ("at", "($x{0.0}, $y{0.0}) m")]
 

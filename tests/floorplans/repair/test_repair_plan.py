@@ -6,6 +6,7 @@ from dataclasses import replace
 from random import Random
 
 import pytest
+from shapely.geometry import Polygon
 from small_plans import box
 
 from floorplans import Wall
@@ -54,6 +55,21 @@ def test_a_good_plan_is_not_made_wrong() -> None:
     plan = box((stud,))
     repaired = repair_plan(plan)
     assert not list(faults(repaired.plan))
+
+
+@pytest.mark.parametrize("cell_m", [0.5, 1.0])
+def test_a_start_stays_at_the_centre_of_a_cell_where_the_outline_moves(cell_m: float) -> None:
+    plan = box(())
+    low_x, low_y = plan.outline.bounds[0] - 0.03, plan.outline.bounds[1] - 0.04
+    corners = [(low_x, low_y) if p == (0.0, 0.0) else p for p in plan.outline.exterior.coords]
+    start = (low_x + 3.5 * cell_m, low_y + 2.5 * cell_m)
+    values = {name: getattr(plan, name) for name in UncheckedPlan.__dataclass_fields__}
+    off = UncheckedPlan(**values | {"outline": Polygon(corners), "start": start})
+    assert any(faults(off))
+    repaired = repair_plan(off)
+    assert not any(faults(repaired.plan))
+    assert repaired.plan.start == pytest.approx((3.5 * cell_m, 2.5 * cell_m))
+    assert any(change.text == "start moved with the cells of maps" for change in repaired.changes)
 
 
 def test_most_drawings_are_improved() -> None:

@@ -9,17 +9,19 @@ import time
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
+from itertools import pairwise
 from threading import Event, get_ident
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from bokeh.models import HoverTool
+from bokeh.models import HoverTool, Image
 from cli_plans import run
+from shapely.geometry import Polygon
 
 import floorplans
 import rssnav
-from floorplans import FloorPlan, PlanError
+from floorplans import FloorPlan, PlanError, Wall
 from floorplans.exporters.formats import export
 from floorplans.geojson_plan import dumps_geojson
 from raytrace import Paths, RadioMap, TraceConfig
@@ -507,6 +509,25 @@ def test_what_a_map_carries_shows_under_the_pointer(session) -> None:
     ):
         shown.show_map(drawn)
         assert [name for name, _ in hover.tooltips] == names
+
+
+def test_the_tooltip_tells_outside_from_without_a_path() -> None:
+    corners = [(0, 0), (6, 0), (6, 2), (3, 2), (3, 4), (0, 4), (0, 0)]
+    walls = [Wall(a, b, "concrete", 0.2, FLAT.height_m) for a, b in pairwise(corners)]
+    plan = replace(
+        FLAT, outline=Polygon(corners), walls=tuple(walls), source=(1, 1, 1.5), start=(0.5, 3.5)
+    )
+    radio_map = make_map(plan, cell_size_m=1.0, config=TraceConfig(max_reflections=0))
+    dark = np.where(radio_map.grid.x < 1, -np.inf, radio_map.rss_dbm)
+    shown = MapFigure(plan, 2.0, on_move=print, on_drag=print, on_tap=print)
+    shown.show_map(replace(radio_map, rss_dbm=dark))
+    (picture,) = (r for r in shown.model.renderers if isinstance(r.glyph, Image))
+    values = picture.data_source.data["rss"][0]
+    outside = (radio_map.grid.x > 3) & (radio_map.grid.y[:, None] > 2)
+    assert (np.isnan(values) == outside).all()
+    assert (np.isneginf(values) == np.isneginf(dark) & ~outside).all()
+    code = shown.model.select_one(HoverTool).formatters["@rss"].code
+    assert code.index("'outside'") < code.index("'no path'")
 
 
 def test_a_mark_tells_where_it_was_dropped_and_comes_back_when_deleted() -> None:
