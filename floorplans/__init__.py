@@ -14,6 +14,7 @@ metres, z is the height above the floor.
 
 from floorplans.errors import PlanError
 from floorplans.frame import PlanFrame
+from floorplans.generators import generate
 from floorplans.georeference import GeoOrigin
 from floorplans.loading import builtin_names, load, loads, save
 from floorplans.materials import (
@@ -49,6 +50,7 @@ __all__ = [
     "WallMesh",
     "builtin_names",
     "dumps",
+    "generate",
     "generate_office",
     "load",
     "loads",

@@ -8,7 +8,7 @@ import typer
 import floorplans
 from atomicfiles import atomic_write
 from floorplans import FloorPlan
-from rssnav.cli import plan_check, plan_export, plan_import, plan_new
+from rssnav.cli import plan_check, plan_export, plan_generate, plan_import, plan_new
 from rssnav.cli.console import print_json, print_table, say
 from rssnav.cli.options import PICTURE_SUFFIXES, Json, Plan, Style, check_suffix, examples
 from rssnav.cli.plan_sketch import sketch
@@ -23,7 +23,7 @@ from rssnav.cli.plan_summary import (
 SOLID_SUFFIXES = (".html", ".glb")
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode="rich")
-for _part in (plan_new, plan_import, plan_check, plan_export):
+for _part in (plan_new, plan_generate, plan_import, plan_check, plan_export):
     _part.add_to(app)
 
 

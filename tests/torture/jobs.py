@@ -59,6 +59,7 @@ JOBS = {
     ),
     "paths": Job(("paths", "room.toml", "--to", "5,3", "--picture", "paths.png", *OPEN)),
     "plan new": Job(("plan", "new", "-o", "new.toml", "--force")),
+    "plan generate": Job(("plan", "generate", "flat", "-o", "flat.toml", "--force")),
     "plan import": Job(("plan", "import", "flat.dxf", "-o", "flat.toml", "--force")),
     "plan import of GeoJSON": Job(
         ("plan", "import", "room.geojson", "-o", "venue.toml", "--force")

@@ -24,7 +24,7 @@ GIVEN = {
     "survey": "survey.csv",
 }
 SUFFIX = {
-    "map": ".h5", "train": ".h5", "fly": ".gif", "plan new": ".toml", "plan import": ".toml",
+    "map": ".h5", "train": ".h5", "fly": ".gif", "plan new": ".toml", "plan generate": ".toml", "plan import": ".toml",
     "plan check": ".toml", "plan export": ".glb", "plan show": ".png", "validate": ".html",
     "calibrate": ".toml",
 }  # fmt: skip

@@ -61,6 +61,7 @@ COMMANDS = {
     "plan export geojson": ("plan", "export", "{plan}", "-o", "{out}/room.geojson"),
     "plan check": ("plan", "check", "{misfit}", "--fix", "-o", "{out}/fixed.toml"),
     "plan new": ("plan", "new", "-o", "{out}/new.toml"),
+    "plan generate": ("plan", "generate", "flat", "-o", "{out}/flat.toml"),
     "plan show": ("plan", "show", "{plan}", "-o", "{out}/plan.png"),
     "paths": ("paths", "{plan}", "--to", "5,3", *QUICK, "--picture", "{out}/paths.png"),
     "maps": ("maps", "--out", "{out}"),

@@ -1,0 +1,117 @@
+"""The generator: a kind of building and a seed in, a floor plan out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal, get_args
+
+import numpy as np
+from shapely.geometry import Polygon
+
+from floorplans.generators import layouts
+from floorplans.generators.building import build
+from floorplans.generators.furniture import furnish
+from floorplans.generators.places import source_and_start, transmitters
+from floorplans.generators.rooms import Room
+from floorplans.generators.style import Style
+from floorplans.plan import FloorPlan
+from floorplans.transmitters import MAX_TRANSMITTERS
+
+Kind = Literal["flat", "office", "hotel", "school", "hall"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+"""Kinds of buildings."""
+
+LAYOUTS: dict[Kind, Callable[[np.random.Generator, float], list[Room]]] = {
+    "flat": layouts.flat,
+    "office": layouts.office,
+    "hotel": layouts.hotel,
+    "school": layouts.school,
+    "hall": layouts.hall,
+}
+AREA_M2: dict[Kind, tuple[int, int]] = {
+    "flat": (50, 160), "office": (300, 3000), "hotel": (400, 2500), "school": (500, 4000),
+    "hall": (500, 6000),
+}  # fmt: skip
+"""Range from which the area is drawn where none is given [m^2]."""
+LEAST_M2, LARGEST_M2 = 50.0, 10_000.0
+
+
+def generate(
+    kind: str,
+    seed: int,
+    *,
+    area_m2: float | None = None,
+    furniture: bool = True,
+    n_transmitters: int = 3,
+) -> FloorPlan:
+    """Generate a building; the same arguments give the same plan on any machine.
+
+    Parameters
+    ----------
+    kind : {"flat", "office", "hotel", "school", "hall"}
+        What it is. A hotel's layout is also that of a hospital ward.
+    seed : int
+        From 0 to 2^63 - 1.
+    area_m2 : float, optional
+        About how large it is, 50 to 10 000 m^2; by default drawn from what is usual for its kind.
+    furniture : bool
+        Whether cabinets, shelves and racks stand in it, as clutter.
+    n_transmitters : int
+        How many access points hang under the ceiling, spread evenly: 0 to 1000.
+
+    Returns
+    -------
+    FloorPlan
+        Every room can be reached through doors, some of which are shut. It has a source and a
+        start.
+
+    Raises
+    ------
+    ValueError
+        For an unknown kind, or a number out of range.
+    """
+    if kind not in KINDS:
+        raise ValueError(f"kind = {kind!r}: expected one of {', '.join(KINDS)}")
+    if isinstance(seed, bool) or not 0 <= seed < 2**63 or seed % 1:
+        raise ValueError(f"seed = {seed!r}: expected an integer from 0 to 2^63 - 1")
+    if area_m2 is not None and not LEAST_M2 <= area_m2 <= LARGEST_M2:
+        raise ValueError(f"area_m2 = {area_m2}: expected {LEAST_M2:g} to {LARGEST_M2:g} m^2")
+    if not 0 <= n_transmitters <= MAX_TRANSMITTERS:
+        raise ValueError(f"n_transmitters = {n_transmitters}: expected 0 to {MAX_TRANSMITTERS}")
+    rng = np.random.Generator(np.random.PCG64([KINDS.index(kind), int(seed)]))
+    return _generated(kind, int(seed), rng, area_m2, furniture, n_transmitters)
+
+
+def _generated(
+    kind: Kind,
+    seed: int,
+    rng: np.random.Generator,
+    area_m2: float | None,
+    furniture: bool,
+    n_transmitters: int,
+) -> FloorPlan:
+    low, high = AREA_M2[kind]
+    wanted_m2 = float(rng.integers(low, high + 1)) if area_m2 is None else area_m2
+    rooms = LAYOUTS[kind](rng, wanted_m2)
+    style = Style.of(kind, rng)
+    walls = build(rooms, style, rng)
+    clutter = furnish(rooms, style.height_m, rng) if furniture else ()
+    standing = (*walls, *clutter)
+    source, start = source_and_start(rooms, standing, rng)
+    return FloorPlan(
+        name=f"{kind} {seed}",
+        outline=_outline(rooms),
+        walls=standing,
+        height_m=style.height_m,
+        floor_material="concrete",
+        ceiling_material="concrete",
+        source=source,
+        start=start,
+        transmitters=transmitters(rooms, standing, style.height_m, n_transmitters),
+    )
+
+
+def _outline(rooms: list[Room]) -> Polygon:
+    """Return the rectangle that the rooms cover [m]."""
+    x, y = (max(room.high[axis] for room in rooms) / 100 for axis in (0, 1))
+    return Polygon([(0.0, 0.0), (x, 0.0), (x, y), (0.0, y)])

@@ -1,0 +1,180 @@
+"""Generated buildings: sound, connected, as large as asked for, and the same on any machine."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import floorplans
+from floorplans import FloorPlan, generate
+from floorplans.checks.inspection import inspect
+from floorplans.generators import KINDS
+from floorplans.generators.rooms import Room, borders, divided
+from floorplans.unchecked import PlanFile
+
+SHA256 = {
+    "flat": "6e2e0db4dc20d76861980667b91e1fd9fdf6c200b5a43186e5777c5d5ce372e3",
+    "office": "d3fd56ba87b28d175664d4639f62d0b3e0daaf90622c668ad91538d8d25f2326",
+    "hotel": "76b714bda75e24ad7624fdf29e464ca0ade4d69892ab85a03ea2955c0e2836ce",
+    "school": "092fa393d49d59214726f2a81438e0f80f65f3fbcd9fd9dee8290f0720c9b205",
+    "hall": "83e578ef24630c2a62859ba8aee7894ac6cff3f9c0f1b0c9fafda8f907c555b3",
+}
+"""Hashes of the plans of seed 1, as `python -m` of this file prints them."""
+
+kinds = pytest.mark.parametrize("kind", KINDS)
+
+
+@kinds
+@given(seed=st.integers(0, 2**63 - 1), area=st.sampled_from([None, 50.0, 400.0, 10_000.0]))
+@settings(max_examples=8)
+def test_plans_have_no_errors_and_no_warnings(kind: str, seed: int, area: float | None) -> None:
+    plan = generate(kind, seed, area_m2=area)
+    assert inspect(PlanFile.of(plan)) == ()
+    if area is not None:
+        assert plan.outline.area == pytest.approx(area, rel=0.12)
+
+
+@kinds
+@pytest.mark.parametrize("seed", range(6))
+def test_every_room_can_be_reached_through_doors(kind: str, seed: int) -> None:
+    """The floor without walls, but with the openings of doors, is one piece."""
+    plan = generate(kind, seed, furniture=False)
+    solid = [segment for wall in plan.walls for segment in _between_doors(wall)]
+    free = plan.outline.difference(shapely.union_all(shapely.linestrings(solid)).buffer(0.03))
+    assert isinstance(free, shapely.Polygon)
+
+
+def _between_doors(wall: floorplans.Wall) -> list[list[tuple[float, float]]]:
+    doors = [(o.offset_m, o.end_m) for o in wall.openings if o.kind == "door"]
+    is_outer = len(wall.openings) != len(doors)
+    ends = [0.0, *(s for door in doors for s in door), wall.length_m]
+    if is_outer:
+        ends = [0.0, wall.length_m]
+    return [
+        [wall.point_at(low), wall.point_at(high)]
+        for low, high in list(pairwise(ends))[::2]
+        if high - low > 1e-9
+    ]
+
+
+@kinds
+def test_the_same_seed_gives_the_same_plan(kind: str) -> None:
+    assert generate(kind, 1).sha256 == SHA256[kind]
+    assert generate(kind, 1).sha256 != generate(kind, 2).sha256
+
+
+@kinds
+def test_furniture_is_clutter_clear_of_walls(kind: str) -> None:
+    plan = generate(kind, 3)
+    clutter = [wall for wall in plan.walls if wall.kind == "clutter"]
+    assert clutter
+    lines = shapely.linestrings([[wall.start, wall.end] for wall in clutter])
+    walls = shapely.union_all(
+        shapely.linestrings([[w.start, w.end] for w in plan.walls if w.kind == "wall"])
+    )
+    assert shapely.distance(lines, walls).min() >= 0.35
+    bare = generate(kind, 3, furniture=False)
+    assert bare.walls == tuple(wall for wall in plan.walls if wall.kind == "wall")
+
+
+@pytest.mark.parametrize("count", [0, 1, 4, 12])
+def test_transmitters_are_spread_and_hang_free(count: int) -> None:
+    plan = generate("office", 4, area_m2=800.0, n_transmitters=count)
+    assert len(plan.transmitters) == count
+    assert len({transmitter.position for transmitter in plan.transmitters}) == count
+    places = np.array([t.position for t in plan.transmitters]).reshape(-1, 3)
+    assert np.all(places[:, 2] < plan.height_m)
+    for point in shapely.points(places[:, :2]):
+        assert plan.outline.contains(point)
+        assert shapely.distance(point, _lines(plan)) >= 0.25
+    if count > 1:
+        gaps = np.hypot(*(places[:, None, :2] - places[None, :, :2]).T)
+        assert gaps[gaps > 0.0].min() > 0.5 * np.sqrt(plan.outline.area / count)
+
+
+def _lines(plan: FloorPlan) -> shapely.Geometry:
+    return shapely.union_all(shapely.linestrings([[w.start, w.end] for w in plan.walls]))
+
+
+@given(st.data())
+@settings(max_examples=30)
+def test_borders_are_those_of_a_rectangle_that_was_cut(data: st.DataObject) -> None:
+    """Every border has the rooms beside it that contain points beside its middle."""
+    width, depth = (data.draw(st.integers(40, 900)) for _ in range(2))
+    rooms = [Room((0, 0), (width, depth), "hall")]
+    for _ in range(data.draw(st.integers(0, 8))):
+        room = rooms.pop(data.draw(st.integers(0, len(rooms) - 1)))
+        axis = data.draw(st.sampled_from((0, 1)))
+        if room.size[axis] < 20:
+            rooms.append(room)
+            continue
+        at = data.draw(st.integers(room.low[axis] + 10, room.high[axis] - 10))
+        rooms.extend(room.cut(axis, at))
+    total = 0
+    for border in borders(rooms):
+        middle = 0.5 * (border.low + border.high)
+        for side, number in ((-0.1, border.below), (0.1, border.above)):
+            point = [middle, border.at + side]
+            assert _room_at(rooms, point[:: 1 if border.axis == 0 else -1]) == number
+        total += border.length * (2 if min(border.below, border.above) >= 0 else 1)
+    assert total == sum(2 * sum(room.size) for room in rooms)
+
+
+def _room_at(rooms: list[Room], point: list[float]) -> int:
+    inside = [
+        number
+        for number, room in enumerate(rooms)
+        if all(a < c < b for a, c, b in zip(room.low, point, room.high, strict=True))
+    ]
+    return inside[0] if inside else -1
+
+
+@given(st.integers(100, 9000), st.integers(20, 60), st.integers(0, 40), st.integers(0, 99))
+def test_divided_intervals_keep_to_their_widths(
+    length: int, tens: int, more: int, seed: int
+) -> None:
+    least, most = 10 * tens, 10 * (tens + more)
+    ends = divided(np.random.default_rng(seed), 0, length, (least, most))
+    widths = np.diff(ends)
+    assert ends[0] == 0
+    assert ends[-1] == length
+    assert np.all(widths[:-1] <= most)
+    assert np.all(widths[:-1] >= least)
+    assert widths[-1] >= min(least, length)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("castle", 1), "kind = 'castle': expected one of flat, office"),
+        (("flat", -1), "seed = -1: expected an integer"),
+        (("flat", 2**63), "expected an integer from 0"),
+        (("flat", 1.5), r"seed = 1\.5"),
+    ],
+)
+def test_wrong_arguments_are_refused(arguments: tuple[str, int], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        generate(*arguments)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"area_m2": 49.0}, r"area_m2 = 49.0: expected 50 to 10000 m\^2"),
+        ({"area_m2": float("nan")}, "area_m2 = nan"),
+        ({"n_transmitters": -1}, "n_transmitters = -1: expected 0 to 1000"),
+    ],
+)
+def test_wrong_options_are_refused(options: dict[str, float], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        generate("hall", 1, **options)  # pyright: ignore[reportArgumentType]
+
+
+if __name__ == "__main__":
+    for name in KINDS:
+        print(f'    "{name}": "{generate(name, 1).sha256}",')
