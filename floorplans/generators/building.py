@@ -14,7 +14,7 @@ from floorplans.walls import Opening, Point, Wall
 
 DOOR_CM, WIDE_DOOR_CM, GATE_CM = 90, 130, 360
 """Widths of doors: of a room, of a large one, of a hall."""
-JAMB_CM = 20
+JAMB_CM, CLEAR_CM = 20, 20
 """Least distance of an opening from the end of its wall."""
 DOOR_HEAD_M, GATE_HEAD_M = 2.1, 3.6
 SILL_M, WINDOW_HEAD_M, HIGH_SILL_M = 0.9, 2.2, 3.0
@@ -145,8 +145,26 @@ def _door(border: Border, rooms: Sequence[Room], style: Style, rng: np.random.Ge
     width = min(width, border.length - 2 * JAMB_CM)
     free = border.length - 2 * JAMB_CM - width
     offset = JAMB_CM + 10 * int(rng.integers(0, free // 10 + 1))
+    offset = _around_a_line(border.low, offset, width, JAMB_CM + free)
     filling = (None, None) if rng.random() < style.open_doors else DOOR
     return Opening(offset / 100, width / 100, 0.0, DOOR_HEAD_M, "door", *filling)
+
+
+def _around_a_line(low: int, offset: int, width: int, most: int) -> int:
+    """Move a door so that the middle line of cells of 1 m passes through it, where it can.
+
+    Parameters
+    ----------
+    low
+        Where the wall begins [cm].
+    offset, width, most
+        Of the door, and its largest offset [cm].
+    """
+    for moved in sorted(range(JAMB_CM, most + 1, 10), key=lambda other: abs(other - offset)):
+        first = low + moved + CLEAR_CM
+        if first + (50 - first) % 100 <= low + moved + width - CLEAR_CM:
+            return moved
+    return offset
 
 
 def _windows(border: Border, room: Room, style: Style) -> Iterator[Opening]:

@@ -7,15 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from floorplans.generators.rooms import Room
 from floorplans.transmitters import PlanTransmitter
-from floorplans.walls import Wall, centre_lines
+from floorplans.walls import Wall, centre_lines, solid_segments
 
 CLEAR_M = 0.25
 """Least distance of a place from the centre line of any wall."""
 BELOW_CEILING_M = 0.3
-PHONE_M = 1.2
+PHONE_M, FLYING_M = 1.2, 2.0
 
 Point = tuple[float, float]
 Ints = NDArray[np.int64]
@@ -50,12 +52,35 @@ def transmitters(
 def source_and_start(
     rooms: Sequence[Room], walls: Sequence[Wall], rng: np.random.Generator
 ) -> tuple[tuple[float, float, float], Point]:
-    """Put a phone anywhere, and the start of a flight in the cell of 1 m farthest from it."""
-    points = _free_points(rooms, walls)
+    """Put a phone and, as far away as a flight can begin, the start.
+
+    Both are in the largest part of the building that flights through open doors connect.
+    """
+    points = _connected(_free_points(rooms, walls), walls)
     phone = points[int(rng.integers(len(points)))]
     start = points[int(_squared(phone[None], points)[0].argmax())]
     x, y = (int(c) / 2 + 0.1 for c in phone)
     return (x, y, PHONE_M), (int(start[0]) / 2, int(start[1]) / 2)
+
+
+def _connected(points: Ints, walls: Sequence[Wall]) -> Ints:
+    """Return the largest set of cells among which a UAV can fly, a metre at a time."""
+    number = {(int(x), int(y)): k for k, (x, y) in enumerate(points)}
+    steps = np.array(
+        [
+            (k, number[x + dx, y + dy])
+            for (x, y), k in number.items()
+            for dx, dy in ((2, 0), (0, 2))
+            if (x + dx, y + dy) in number
+        ]
+    )
+    solid = np.array(shapely.linestrings(solid_segments(walls, FLYING_M)), dtype=np.object_)
+    flown = shapely.linestrings(points[steps] / 2)
+    crossing, _ = shapely.STRtree(solid).query(flown, predicate="intersects")
+    steps = np.delete(steps, np.unique(crossing), axis=0)
+    moves = coo_array((np.ones(len(steps)), steps.T), shape=(len(points), len(points)))
+    _, part = connected_components(moves, directed=False)
+    return points[part == np.bincount(part).argmax()]
 
 
 def _squared(one: Ints, other: Ints) -> Ints:

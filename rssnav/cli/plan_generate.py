@@ -43,8 +43,15 @@ def generate_plan(
             show_default="drawn from what is usual for the kind",
         ),
     ] = None,
-    transmitters: Annotated[
-        int, typer.Option(metavar="N", min=0, max=100, help="Access points under the ceiling.")
+    access_points: Annotated[
+        int,
+        typer.Option(
+            "--transmitters",
+            metavar="N",
+            min=0,
+            max=100,
+            help="Access points under the ceiling.",
+        ),
     ] = 3,
     furniture: Annotated[
         bool, typer.Option("--furniture/--no-furniture", help="Cabinets, shelves and racks.")
@@ -59,7 +66,7 @@ def generate_plan(
     if output.exists() and not force:
         raise FileExistsError(17, "already exists; use --force to overwrite", str(output))
     plan = floorplans.generate(
-        kind, seed, area_m2=area, furniture=furniture, n_transmitters=transmitters
+        kind, seed, area_m2=area, furniture=furniture, n_transmitters=access_points
     )
     with atomic_write(output) as beside:
         beside.write_text(floorplans.dumps(plan), encoding="utf-8", newline="\n")

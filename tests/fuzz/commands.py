@@ -60,6 +60,7 @@ RIGHT: dict[str, dict[str, str]] = {
     "experiments": {"--out": "out", "--runs": "1"},
     "report": {"--out": "folder"},
     "plan new": {"--output": "out.toml"},
+    "plan generate": {"kind": "flat", "--output": "out.toml"},
     "plan import": {"file": "room.geojson", "--output": "out.toml"},
     "plan check": {"plan": PLAN},
     "plan export": {"plan": PLAN, "--output": "out.geojson"},
