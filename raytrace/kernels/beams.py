@@ -11,6 +11,7 @@ import numpy as np
 
 from raytrace.arrays import Floats, Int32s, Ints
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.edge_losses import Directions, directions_between
 from raytrace.kernels.guard import Guard, is_stopped, may_hold
 from raytrace.kernels.losses import (
     IS_MIRRORED,
@@ -30,11 +31,12 @@ PARENT, EDGE, REFLECTED, CELL, ORDER, TRANSMITTED, BOUNCES, INTERACTIONS = range
 gone through; floor or ceiling reflections that its heights require; reflections, solid walls gone
 through and partial walls with openings so far."""
 
-IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y, FRACTION = range(7)
-"""Columns of `Tree.beam`: the root's image, and the corners of the window [m]; the largest fraction
-of the power that the walls on the way leave, which is known where there is a limit by loss."""
+IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y, FRACTION, AXIS_X, AXIS_Y = range(9)
+"""Columns of `Tree.beam`: the root's image, and the corners of the window [m]. Where there is a
+limit by loss: the largest fraction of the power that the walls on the way leave, and the image of
+the direction of a vertical edge's o-face."""
 
-BEAM_BYTES = 8 * 4 + 7 * 8
+BEAM_BYTES = 8 * 4 + 9 * 8
 """Size of a row of `Tree`."""
 
 Window = tuple[float, float, float, float]
@@ -42,7 +44,7 @@ Window = tuple[float, float, float, float]
 
 
 class Tree(NamedTuple):
-    """Beams, each behind its parent: `link` (n, 8) int32 and `beam` (n, 7)."""
+    """Beams, each behind its parent: `link` (n, 8) int32 and `beam` (n, 9)."""
 
     link: Int32s
     beam: Floats
@@ -50,7 +52,7 @@ class Tree(NamedTuple):
 
 def no_tree() -> Tree:
     """Return a tree without beams."""
-    return Tree(np.empty((0, 8), np.int32), np.empty((0, 7)))
+    return Tree(np.empty((0, 8), np.int32), np.empty((0, 9)))
 
 
 def grow_tree(
@@ -100,13 +102,14 @@ def grow_tree_arrays(
 ) -> tuple[Int32s, Floats, float, bool]:
     """Arrays of `grow_tree`."""
     link = np.zeros((256 + len(root_cells), 8), np.int32)
-    beam, left_out = np.zeros((256 + len(root_cells), 7)), np.zeros(1)
+    beam, left_out = np.zeros((256 + len(root_cells), 9)), np.zeros(1)
     n = i = int(np.int64(0))  # a literal would be compiled as a type of its own
     for cell in root_cells:
         link[n, PARENT] = link[n, EDGE] = -1
         link[n, CELL] = cell
         beam[n, IMAGE_X], beam[n, IMAGE_Y] = root
         beam[n, FRACTION] = 1.0
+        beam[n, AXIS_X], beam[n, AXIS_Y] = limits.loss.edge_ways.axis
         n += 1
     while i < n and not is_stopped(guard):
         needed = n + most_children(view, link[i, CELL])
@@ -164,11 +167,14 @@ def split(
         if not meets:
             continue
         met = incidence_of(view, beam[i], e, window, limits)
+        leaves = directions_of(beam[i], order, window, limits)
         required = max(link[i, BOUNCES], bounces[e, 0])
         if (
             order + required <= limits.max_reflections
             and may_enter(link, i, view.beyond[e])
-            and is_strong(limits, order, int(view.beyond[e]), fraction, met.nearest, left_out)
+            and is_strong(
+                limits, order, int(view.beyond[e]), (fraction, met.nearest), leaves, left_out
+            )
         ):
             pass_beam(view, link, beam, i, n, e, window)
             link[n, CELL] = view.beyond[e]
@@ -176,11 +182,12 @@ def split(
             n += 1
         if link[i, TRANSMITTED] < limits.max_transmissions:
             kept = fraction * largest_fraction(limits, view, e, IS_TRANSMITTED, met, order)
-            n = transmit_beam(view, link, beam, i, n, e, window, (limits, met, kept, left_out))
+            loss = limits, (kept, met.nearest), leaves, left_out
+            n = transmit_beam(view, link, beam, i, n, e, window, loss)
         required = max(link[i, BOUNCES], bounces[e, 1])
         if view.profile[e] >= 0 and order + 1 + required <= limits.max_reflections:
             kept = fraction * largest_fraction(limits, view, e, IS_MIRRORED, met, order)
-            if is_strong(limits, order + 1, cell, kept, met.nearest, left_out):
+            if is_strong(limits, order + 1, cell, (kept, met.nearest), leaves, left_out):
                 reflect_beam(view, link, beam, i, n, e, window)
                 link[n, BOUNCES] = required
                 beam[n, FRACTION] = kept
@@ -197,6 +204,29 @@ def incidence_of(view: PlanView, beam: Floats, e: int, window: Window, limits: L
     nx, ny, d = view.plane[e, 0], view.plane[e, 1], view.plane[e, 2]
     right, left = (window[0] - px, window[1] - py), (window[2] - px, window[3] - py)
     return incidence(nx * px + ny * py - d, (nx, ny), right, left)
+
+
+@jit(inline=True)
+def directions_of(beam: Floats, order: int, window: Window, limits: Limits) -> Directions:
+    """Directions in which the rays of a beam within a window leave a vertical edge."""
+    ways = limits.loss.edge_ways
+    if len(ways.order) == 0:
+        return Directions(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    px, py, rx, ry, lx, ly = beam[IMAGE_X], beam[IMAGE_Y], *window
+    right, left = (
+        in_root_frame(beam, order, rx - px, ry - py),
+        in_root_frame(beam, order, lx - px, ly - py),
+    )
+    if order % 2 == 1:
+        right, left = left, right
+    return directions_between(ways.wedge, right, left)
+
+
+@jit(inline=True)
+def in_root_frame(beam: Floats, order: int, x: float, y: float) -> tuple[float, float]:
+    """Components of a beam's direction along the edge's o-face and across, before reflections."""
+    across = cross(beam[AXIS_X], beam[AXIS_Y], x, y)
+    return beam[AXIS_X] * x + beam[AXIS_Y] * y, -across if order % 2 == 1 else across
 
 
 @jit(inner=True)
@@ -260,7 +290,8 @@ def pass_beam(
     link_child(view, link, i, n, e, False)
     beam[n, IMAGE_X], beam[n, IMAGE_Y] = beam[i, IMAGE_X], beam[i, IMAGE_Y]
     beam[n, RIGHT_X], beam[n, RIGHT_Y], beam[n, LEFT_X], beam[n, LEFT_Y] = window
-    beam[n, FRACTION] = beam[i, FRACTION]
+    for k in (FRACTION, AXIS_X, AXIS_Y):
+        beam[n, k] = beam[i, k]
 
 
 @jit(inner=True)
@@ -272,13 +303,13 @@ def transmit_beam(
     n: int,
     e: int,
     window: Window,
-    loss: tuple[Limits, Incidence, float, Floats],
+    loss: tuple[Limits, tuple[float, float], Directions, Floats],
 ) -> int:
     """Write the beams that go through a solid wall, from row n on; return the next row.
 
     `loss` holds the arguments of `losses.is_strong`.
     """
-    limits, met, kept, left_out = loss
+    limits, kept, leaves, left_out = loss
     order = int(link[i, ORDER])
     for k in range(view.behind_first[e], view.behind_first[e + 1]):
         f = view.behind[k]
@@ -286,11 +317,11 @@ def transmit_beam(
         part = common(beam[i], window, back)
         if not is_wide(beam[i], part) or not may_enter(link, i, int(view.cell_of[f])):
             continue
-        if is_strong(limits, order, int(view.cell_of[f]), kept, met.nearest, left_out):
+        if is_strong(limits, order, int(view.cell_of[f]), kept, leaves, left_out):
             pass_beam(view, link, beam, i, n, f, part)
             link[n, CELL] = view.cell_of[f]
             link[n, TRANSMITTED] += 1
-            beam[n, FRACTION] = kept
+            beam[n, FRACTION] = kept[0]
             n += 1
     return n
 
@@ -312,3 +343,8 @@ def reflect_beam(
     beam[n, IMAGE_X], beam[n, IMAGE_Y] = mirrored(beam[i, IMAGE_X], beam[i, IMAGE_Y], line)
     beam[n, RIGHT_X], beam[n, RIGHT_Y] = mirrored(lx, ly, line)
     beam[n, LEFT_X], beam[n, LEFT_Y] = mirrored(rx, ry, line)
+    along = 2.0 * (beam[i, AXIS_X] * line[0] + beam[i, AXIS_Y] * line[1])
+    beam[n, AXIS_X], beam[n, AXIS_Y] = (
+        beam[i, AXIS_X] - along * line[0],
+        beam[i, AXIS_Y] - along * line[1],
+    )

@@ -2,7 +2,10 @@
 
 import math
 
-from raytrace.kernels.building import TraceGeometry
+import numpy as np
+
+from raytrace.arrays import Floats
+from raytrace.kernels.building import Building, TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.lanes import (
@@ -15,9 +18,10 @@ from raytrace.kernels.lanes import (
     maximum,
     minimum,
     sqrt,
-    where,
 )
 from raytrace.kernels.unfolding import NORMAL, REFLECT_WALL, SURFACE, TYPE, Leg
+from raytrace.kernels.utd import wedge_cotangents
+from raytrace.kernels.wedge import FaceAngles, Wedge
 
 SHEET_POWER, SHEET_POWER_THROUGH_WALLS, WEDGE_POWER = 1.0, 2.25, 4.0
 """Largest power behind an edge over that of a free path as long: two terms of half its field; the
@@ -30,6 +34,15 @@ def free_space(tables: FieldTables, length: Lanes) -> Lanes:
     """Bound on the received fraction of the power over distances [m]."""
     spreading = (tables.wavelength / (4.0 * math.pi)) / length
     return spreading * spreading * tables.peak_gain
+
+
+@jit(inline=True, fast=True)
+def largest_reflectance(tables: FieldTables, slab: int, cosine: Lanes) -> Lanes:
+    """Largest fraction of the power that a slab reflects at a cosine of incidence or above."""
+    rows = tables.slab_rows
+    row = floor(maximum(minimum(cosine * (rows - 2.0), rows - 2.0), 0.0))
+    found, _ = gather_pairs1(tables.max_reflectance, row + slab * float(rows))
+    return found
 
 
 @jit(inner=True, fast=True)
@@ -54,50 +67,118 @@ def leg_bound(
     """
     rise = (geometry.max_reflections - wall_reflections + 1) * geometry.building.height
     cosine = length / sqrt(length * length + rise * rise)
-    rows, bound = tables.slab_rows, lanes_of(1.0)
+    bound = lanes_of(1.0)
     for k in range(n):
         if leg.types[k, TYPE] == REFLECT_WALL:
-            at = absolute(load(leg.interactions[k, NORMAL])) * cosine * (rows - 2.0)
-            row = floor(maximum(minimum(at, rows - 2.0), 0.0))
-            row = row + leg.types[k, SURFACE] * float(rows)
-            reflectance, _ = gather_pairs1(tables.max_reflectance, row)
-            bound = bound * reflectance
+            at = absolute(load(leg.interactions[k, NORMAL])) * cosine
+            bound = bound * largest_reflectance(tables, leg.types[k, SURFACE], at)
     return bound
+
+
+@jit(inline=True, fast=True)
+def bounce_bound(
+    building: Building, tables: FieldTables, sin_elevation: Lanes, bounces: int
+) -> Lanes:
+    """Bound on the fraction of the power that floor and ceiling reflect."""
+    at_floor = largest_reflectance(tables, building.floor, sin_elevation)
+    at_ceiling = largest_reflectance(tables, building.ceiling, sin_elevation)
+    once, bound = maximum(at_floor, at_ceiling), lanes_of(1.0)
+    for _ in range(bounces):
+        bound = bound * once
+    return bound
+
+
+@jit(inline=True, fast=True)
+def image_bound(building: Building, tables: FieldTables, slope: Lanes, bounces: int) -> Lanes:
+    """Power over an image height, over the bound of a horizontal path."""
+    cos_squared = 1.0 / (1.0 + slope * slope)
+    sine = absolute(slope) * sqrt(cos_squared)
+    return cos_squared * bounce_bound(building, tables, sine, bounces)
+
+
+LENGTHS = 64
+"""Intervals of horizontal lengths in `height_sums`."""
+
+
+def height_sums(geometry: TraceGeometry, tables: FieldTables) -> Floats:
+    """Power of all image heights together over the bound of a horizontal path.
+
+    Returns
+    -------
+    ndarray
+        (max_reflections + 1, LENGTHS + 1) by the reflections left and the horizontal length l, in
+        equal intervals of l / (l + height of the ceiling); the last column is for any length.
+    """
+    building, order = geometry.building, geometry.max_reflections
+    at = np.minimum(np.arange(1, LENGTHS + 2) / LENGTHS, 1.0 - 1e-12)
+    length = building.height * at / (1.0 - at)
+    rises = np.abs(geometry.receivers.image_z - geometry.transmitter[2]).min(axis=0, initial=np.inf)
+    rises = np.where(np.isfinite(rises), rises, 0.0)
+    reflectance = tables.max_reflectance.reshape(-1, tables.slab_rows)
+    surfaces = reflectance[[building.floor, building.ceiling]].max(axis=0)
+    found = np.zeros((order + 1, LENGTHS + 1))
+    for rise, bounces in zip(rises, geometry.image_bounces, strict=True):
+        sine = rise / np.hypot(rise, length)
+        once = surfaces[(sine * (tables.slab_rows - 2)).astype(np.int64)]
+        found[bounces:] += (1.0 - sine**2) * once**bounces
+    return found
+
+
+@jit(inline=True, fast=True)
+def all_heights(heights: Floats, left: int, length: Lanes, height: float) -> Lanes:
+    """Look up `height_sums`."""
+    at = floor(length * (float(LENGTHS) / (length + height)))
+    found, _ = gather_pairs1(heights[left], minimum(at, LENGTHS - 1.0))
+    return found
+
+
+@jit(inline=True, fast=True)
+def largest_term(size: Lanes, cotangent: Lanes) -> Lanes:
+    """Bound on a term of the diffraction coefficient."""
+    return minimum(size * absolute(cotangent), lanes_of(0.5))
 
 
 @jit(inner=True, fast=True)
 def wedge_bound(
-    geometry: TraceGeometry,
     tables: FieldTables,
-    is_sheet: bool,
-    cosines: tuple[Lanes, Lanes],
+    wedge: Wedge,
+    directions: tuple[FaceAngles, FaceAngles],
+    shadow: Floats,
     sqrt_2kl: Lanes,
-    total: Lanes,
-    wall_reflections: int,
+    sin_beta: Lanes,
 ) -> Lanes:
-    """Bounds on diffracted powers, without the reflections at walls.
+    """Bound on the power behind an edge over that of a free path as long.
 
-    A term of a half plane has at most half the field of a free path as long, and at most
-    1 / (2 sqrt(pi) s) of it, s the argument of its transition function; a wedge has four. The
-    transmitted field in the shadow of a sheet at most doubles the first one.
+    Terms of the diffraction coefficient have at most half the field of a free path, and at most
+    that for a transition function of 1 (docs/theory.md, eq. 47).
 
     Parameters
     ----------
-    geometry, tables, is_sheet
-        The geometry of the trace, the antennas, and whether the wedge is a half plane.
-    cosines
-        Of half the angles to the two shadow boundaries.
-    sqrt_2kl, total, wall_reflections
-        See `vertical_edges.Pair`, and the number of reflections at walls.
+    tables, wedge
+        The materials, and the wedge.
+    directions
+        Behind the edge and before it.
+    shadow
+        (COSINE_BINS + 1,) largest |1 - T'|^2 of a sheet at a cosine of incidence or above.
+    sqrt_2kl, sin_beta
+        sqrt(2 k L) / sqrt(sin beta), and least sine of the angle between rays and edge.
     """
-    if not is_sheet:
-        return free_space(tables, total) * WEDGE_POWER
-    rise = (geometry.max_reflections - wall_reflections + 1) * geometry.building.height
-    cosine = total / sqrt(total * total + rise * rise)
-    amplitude = lanes_of(0.0)
-    through = 2.0 if len(tables.transmission) > 0 else 1.0
-    for half in cosines:
-        s = (2.0 * math.sqrt(math.pi)) * sqrt_2kl * sqrt(cosine) * absolute(half)
-        amplitude = amplitude + where(s < 2.0, lanes_of(0.5), 1.0 / s) * through
-        through = 1.0
-    return amplitude * amplitude * free_space(tables, total)
+    at, incident = directions
+    size = (1.0 / (2.0 * wedge.n * math.sqrt(math.pi))) / (sqrt_2kl * sqrt(sin_beta))
+    o_cosine = at.root_o * incident.root_o * sin_beta
+    o_face = sqrt(largest_reflectance(tables, wedge.o_slab, o_cosine))
+    if wedge.is_sheet:
+        ch, sh, gh, fh = at.cos_half, at.sin_half, incident.cos_half, incident.sin_half
+        row = floor(minimum(o_cosine * float(len(shadow) - 1), len(shadow) - 2.0))
+        through, _ = gather_pairs1(shadow, row)
+        shadowed = minimum(2.0 * size / absolute(ch * gh + sh * fh), lanes_of(0.5))
+        reflected = minimum(2.0 * size / absolute(ch * gh - sh * fh), lanes_of(0.5))
+        amplitude = sqrt(through) * shadowed + o_face * reflected
+        return amplitude * amplitude
+    n_cosine = at.root_n * incident.root_n * sin_beta
+    n_face = sqrt(largest_reflectance(tables, wedge.n_slab, n_cosine))
+    terms = wedge_cotangents(wedge, at, incident)
+    amplitude = largest_term(size, terms[0]) + largest_term(size, terms[1])
+    amplitude = amplitude + n_face * largest_term(size, terms[2])
+    amplitude = amplitude + o_face * largest_term(size, terms[3])
+    return amplitude * amplitude

@@ -8,7 +8,12 @@ from raytrace.kernels.building import Building, TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import Ray, new_ray, propagate
 from raytrace.kernels.field_tables import FieldTables, phasor
-from raytrace.kernels.horizontal_edge_legs import EdgeLegs, EdgePath, EdgeWorkspace
+from raytrace.kernels.horizontal_edge_legs import (
+    EdgeLegs,
+    EdgePath,
+    EdgeWorkspace,
+    HorizontalEdgeArrays,
+)
 from raytrace.kernels.lanes import ComplexLanes, Lanes, lanes_of, sqrt
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.strips import from_frame
@@ -16,7 +21,7 @@ from raytrace.kernels.unfolding import Leg
 from raytrace.kernels.utd import common_factor, diffracted, wedge_terms
 from raytrace.kernels.validity import validity_weight
 from raytrace.kernels.waves import Wave, launch, receive
-from raytrace.kernels.wedge import face_angles
+from raytrace.kernels.wedge import FaceAngles, face_angles
 
 
 @jit(inline=True)
@@ -110,6 +115,24 @@ def turned_to_edge(frame: Floats, ux: Lanes, uy: Lanes, sin_el: Lanes) -> tuple[
     return -sin_el * (ux * tx + uy * ty), ux * ty - uy * tx
 
 
+@jit(inline=True, fast=True)
+def angles_at_edge(path: EdgePath, rows: Floats) -> tuple[FaceAngles, FaceAngles]:
+    """Angles from the wall behind the edge and before it, on the receivers' side.
+
+    The transmitter may stand on either side; `rows` is scratch.
+    """
+    incident = angles_from_wall(path.edge, lanes_of(path.h_in), lanes_of(path.z_in), rows)
+    return angles_from_wall(path.edge, path.h_out, path.z_out, rows), incident
+
+
+@jit(inline=True, fast=True)
+def angles_from_wall(edge: HorizontalEdgeArrays, h: Lanes, z: Lanes, rows: Floats) -> FaceAngles:
+    """Angles of points, off the edge in the plan view and high [m]; `rows` is scratch."""
+    rise = (z - edge.z) * edge.up
+    inverse = 1.0 / hypot(h, rise)
+    return face_angles(edge.wedge, rise * inverse, h * inverse, rows)
+
+
 @jit(fast=True, inner=True)
 def over_edge(
     tables: FieldTables,
@@ -120,15 +143,11 @@ def over_edge(
     work: EdgeWorkspace,
 ) -> tuple[ComplexLanes, ComplexLanes]:
     """Fields behind the half plane, without its common factor (see `utd.diffracted`)."""
-    # angles from the wall, on the receivers' side; the transmitter may stand on either
     edge = path.edge
-    z_in, z_out = edge.up * (path.z_in - edge.z), (path.z_out - edge.z) * edge.up
-    h_in, h_out = path.h_in, path.h_out
-    inv_in, inv_out = 1.0 / math.hypot(h_in, z_in), 1.0 / hypot(h_out, z_out)
-    rows = work.workspace.rows
-    incident = face_angles(edge.wedge, lanes_of(z_in * inv_in), lanes_of(h_in * inv_in), rows)
-    at = face_angles(edge.wedge, z_out * inv_out, h_out * inv_out, rows)
-    grazing = (abs(h_in) + h_out) * inv_out * (0.5 * GRAZING_M * inv_in)
+    at, incident = angles_at_edge(path, work.workspace.rows)
+    inv_in = 1.0 / math.hypot(path.h_in, path.z_in - edge.z)
+    inv_out = 1.0 / hypot(path.h_out, path.z_out - edge.z)
+    grazing = (abs(path.h_in) + path.h_out) * inv_out * (0.5 * GRAZING_M * inv_in)
     terms = wedge_terms(edge.wedge, at, incident, grazing)
     product = path.before * path.after / (path.before + path.after)
     sqrt_2kl = sqrt((4.0 * math.pi / tables.wavelength) * product) * beta[0]

@@ -53,6 +53,9 @@ class ImagesIn(NamedTuple):
         (n,) the interval of the edge within the beam [m].
     fraction
         (n,) see `beams.FRACTION`.
+    nearest, farthest
+        (n, max_reflections + 1) least and largest distance of its images in floor and ceiling, of
+        so many reflections at most, from the edge's line [m].
     """
 
     order: Ints
@@ -62,6 +65,8 @@ class ImagesIn(NamedTuple):
     low: Floats
     high: Floats
     fraction: Floats
+    nearest: Floats
+    farthest: Floats
 
 
 class HorizontalEdgeBeams(NamedTuple):
@@ -96,6 +101,11 @@ class EdgeWorkspace(NamedTuple):
         (n_beams, 2, 8) images of the points where paths cross the edge [m].
     across
         (2 max_reflections + 1, 8) distances of the receivers' images from the edge's line [m].
+    nearest, farthest
+        (max_reflections + 1, 8) the same as in `ImagesIn`.
+    halves
+        (2 max_reflections + 1, 2, 8) cosine and sine of half the angles between these and the wall;
+        not set without a power threshold.
     """
 
     workspace: Workspace
@@ -103,6 +113,9 @@ class EdgeWorkspace(NamedTuple):
     leg_out: Leg
     images: Floats
     across: Floats
+    nearest: Floats
+    farthest: Floats
+    halves: Floats
 
 
 def new_edge_workspace(max_reflections: int, tree: Tree, strips: StripTree) -> EdgeWorkspace:
@@ -113,6 +126,9 @@ def new_edge_workspace(max_reflections: int, tree: Tree, strips: StripTree) -> E
         new_leg(strips.link),
         np.empty((len(strips.link), 2, WIDTH)),
         np.empty((2 * max_reflections + 1, WIDTH)),
+        np.empty((max_reflections + 1, WIDTH)),
+        np.empty((max_reflections + 1, WIDTH)),
+        np.empty((2 * max_reflections + 1, 2, WIDTH)),
     )
 
 
@@ -139,8 +155,6 @@ class EdgePath(NamedTuple):
         Numbers of the beam to the edge among those that meet it, and of the height images.
     order
         All reflections.
-    weight
-        Weights of the paths.
     """
 
     edge: HorizontalEdgeArrays
@@ -159,7 +173,6 @@ class EdgePath(NamedTuple):
     image_in: int
     image_out: int
     order: int
-    weight: Lanes
 
 
 class EdgeLegs(NamedTuple):

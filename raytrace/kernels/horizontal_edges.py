@@ -6,30 +6,39 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Floats
-from raytrace.kernels.beams import CELL, ORDER, Tree
+from raytrace.kernels.beams import ORDER, Tree
 from raytrace.kernels.blocks import Block, next_block
-from raytrace.kernels.bounds import SHEET_POWER, SHEET_POWER_THROUGH_WALLS, free_space
+from raytrace.kernels.bounds import bounce_bound, free_space, wedge_bound
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import is_stopped
-from raytrace.kernels.horizontal_edge_field import edge_gain, hypot
+from raytrace.kernels.horizontal_edge_field import (
+    angles_at_edge,
+    angles_from_wall,
+    edge_gain,
+    hypot,
+)
 from raytrace.kernels.horizontal_edge_legs import (
     EdgePath,
     EdgeWorkspace,
     HorizontalEdgeArrays,
     HorizontalEdgeBeams,
+    ImagesIn,
     legs_over_edge,
     walls_over_edge,
 )
 from raytrace.kernels.lanes import (
     WIDTH,
     Lanes,
+    Mask,
+    absolute,
     any_of,
     lanes_of,
     load,
     maximum,
     minimum,
+    sqrt,
     store,
     where,
 )
@@ -40,10 +49,13 @@ from raytrace.kernels.sums import Bundle, empty_bundle, with_path
 from raytrace.kernels.validity import OFFSET_M, one_sided_weight, validity_weight
 from raytrace.kernels.workspace import (
     Collector,
+    Workspace,
     add_bundle,
+    add_left_out,
     apply_power_threshold,
     count_path,
-    least_power,
+    has_threshold,
+    least_powers,
 )
 
 OFFSETS_OF_LEGS_M = (
@@ -55,6 +67,10 @@ OFFSETS_OF_LEGS_M = (
 )
 """Height offsets before and behind the edge with which a path is evaluated [m], as
 `validity.ONE_SIDED_OFFSETS_M`; in a one-sided evaluation it has a quarter of its weight."""
+
+
+MARGIN_M = 1e-6
+"""Points of an edge this near to its visible interval are examined [m]."""
 
 
 class Seen(NamedTuple):
@@ -84,8 +100,27 @@ def seen_from(edge: HorizontalEdgeArrays, seen: Floats, block: Block, work: Edge
         rows[2, j], rows[3, j] = seen[hit, 2], seen[hit, 3]
     h = load(rows[1])
     for k in range(len(work.across)):
-        store(work.across[k], hypot(h, load(work.workspace.image_z[k]) - edge.z))
+        across = hypot(h, load(work.workspace.image_z[k]) - edge.z)
+        store(work.across[k], across)
+        left, before = (k + 1) // 2, k // 2
+        nearest = farthest = across
+        if k > 0:
+            nearest = minimum(across, load(work.nearest[before]))
+            farthest = maximum(across, load(work.farthest[before]))
+        store(work.nearest[left], nearest)
+        store(work.farthest[left], farthest)
     return Seen(load(rows[0]), h, load(rows[2]), load(rows[3]))
+
+
+@jit(inline=True)
+def may_cross(images: ImagesIn, seen: Seen, p: int, left: int, work: EdgeWorkspace) -> Mask:
+    """Whether paths over some image heights can cross the edge within the visible interval."""
+    x, (near, far) = images.x[p], (images.nearest[p, left], images.farthest[p, left])
+    one = x + (seen.x - x) * (near / (near + load(work.farthest[left])))
+    other = x + (seen.x - x) * (far / (far + load(work.nearest[left])))
+    low, high = maximum(seen.low, images.low[p]), minimum(seen.high, images.high[p])
+    inside = (maximum(one, other) > low - MARGIN_M) & (minimum(one, other) < high + MARGIN_M)
+    return inside & (high - low > GRAZING_M)
 
 
 @jit(inline=True)
@@ -103,17 +138,21 @@ def add_edge_paths(
     tables: FieldTables,
     trees: tuple[Tree, StripTree],
     path: EdgePath,
-    block: Block,
+    here: tuple[Block, Lanes],
     work: EdgeWorkspace,
     record: Record,
 ) -> Bundle:
-    """Add paths over an edge; one-sided evaluations of those that graze another edge."""
+    """Add paths over an edge; one-sided evaluations of those that graze another edge.
+
+    `here` holds the receivers, and the weights of the paths.
+    """
+    block, weight_here = here
     legs = legs_over_edge(geometry.building.plan, path, trees, block, work)
-    grazing, excess = path.weight >= 0.0, path.before + path.after - block.straight
+    grazing, excess = weight_here >= 0.0, path.before + path.after - block.straight
     for side in range(len(OFFSETS_OF_LEGS_M)):
         offsets = OFFSETS_OF_LEGS_M[side]
         n_transmissions, grazes = walls_over_edge(geometry, path.edge, legs, offsets, work)
-        weight = path.weight * validity_weight(n_transmissions, geometry.max_transmissions)
+        weight = weight_here * validity_weight(n_transmissions, geometry.max_transmissions)
         weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.25)
         if any_of(weight > 0.0):
             gain = edge_gain(
@@ -129,11 +168,180 @@ def add_edge_paths(
     return bundle
 
 
+@jit(inner=True, fast=True)
+def path_bound(
+    geometry: TraceGeometry,
+    tables: FieldTables,
+    path: EdgePath,
+    shadow: Floats,
+    work: EdgeWorkspace,
+) -> Lanes:
+    """Bound on the power of paths over an edge, without the walls."""
+    total, building = path.before + path.after, geometry.building
+    sin_beta = across_edge(path) / total
+    product = path.before * path.after / total
+    sqrt_2kl = sqrt((4.0 * math.pi / tables.wavelength) * product * sin_beta)
+    directions = angles_at_edge(path, work.workspace.rows)
+    bound = wedge_bound(tables, path.edge.wedge, directions, shadow, sqrt_2kl, sin_beta)
+    sine_in = lanes_of(abs(path.edge.z - path.z_in)) / path.before
+    sine_out = absolute(path.z_out - path.edge.z) / path.after
+    bound = bound * bounce_bound(building, tables, sine_in, path.bounces_in)
+    bound = bound * bounce_bound(building, tables, sine_out, path.bounces_out)
+    return bound * free_space(tables, total)
+
+
+@jit(inline=True, fast=True)
+def halves_of(edge: HorizontalEdgeArrays, h: Lanes, z: Lanes, rows: Floats) -> tuple[Lanes, Lanes]:
+    """Cosine and sine of half the angle from the wall (see `angles_from_wall`)."""
+    angles = angles_from_wall(edge, h, z, rows)
+    return angles.cos_half, angles.sin_half
+
+
+@jit(inline=True, fast=True)
+def set_halves(edge: HorizontalEdgeArrays, seen: Seen, work: EdgeWorkspace) -> None:
+    """Set `work.halves`."""
+    for b in range(len(work.halves)):
+        at = halves_of(edge, seen.h, load(work.workspace.image_z[b]), work.workspace.rows)
+        store(work.halves[b, 0], at[0])
+        store(work.halves[b, 1], at[1])
+
+
+@jit(inline=True, fast=True)
+def quick_bound(
+    tables: FieldTables,
+    incident: tuple[Lanes, Lanes],
+    across_in: Lanes,
+    largest_shadow: float,
+    work: EdgeWorkspace,
+    b: int,
+) -> Lanes:
+    """`path_bound` for rays at right angles to the edge, and without floor, ceiling and faces.
+
+    Parameters
+    ----------
+    tables, largest_shadow
+        Wavelength and antennas, and the largest |1 - T'|^2 at any angle.
+    incident, across_in
+        Half the angle before the edge, as from `halves_of`, and the distance there [m].
+    work, b
+        What is behind it, and which of the height images.
+    """
+    (gh, fh), across_out = incident, load(work.across[b])
+    ch, sh, total = load(work.halves[b, 0]), load(work.halves[b, 1]), across_in + across_out
+    size = sqrt(tables.wavelength * total / (across_in * across_out)) * (0.25 / math.pi)
+    amplitude = minimum(size / absolute(ch * gh + sh * fh), lanes_of(0.5)) * math.sqrt(
+        largest_shadow
+    )
+    amplitude = amplitude + minimum(size / absolute(ch * gh - sh * fh), lanes_of(0.5))
+    return amplitude * amplitude * free_space(tables, total)
+
+
+@jit(inline=True)
+def across_edge(path: EdgePath) -> Lanes:
+    """Distances of both ends from the edge's line, added up [m]."""
+    before = math.hypot(path.h_in, path.z_in - path.edge.z)
+    return before + hypot(path.h_out, path.z_out - path.edge.z)
+
+
+class Arriving(NamedTuple):
+    """The paths from one image of the transmitter to eight receivers, over all heights.
+
+    Attributes
+    ----------
+    p, left
+        Number of the image, and the reflections left to floor and ceiling.
+    low, high
+        The interval of the edge that is visible from both ends [m].
+    weight
+        Weights of the receivers.
+    walls, least
+        Largest fraction of the power that the walls leave, and the power thresholds.
+    """
+
+    p: int
+    left: int
+    low: Lanes
+    high: Lanes
+    weight: Lanes
+    walls: float
+    least: Lanes
+
+
+@jit(inline=True)
+def arriving_strongly(
+    tables: FieldTables,
+    images: ImagesIn,
+    seen: Seen,
+    way: Arriving,
+    behind: float,
+    workspace: Workspace,
+    collector: Collector,
+) -> Arriving:
+    """Set the weights of receivers at which all paths are below the threshold to 0.
+
+    `behind` is the largest power behind the edge.
+    """
+    h, aside = abs(images.h[way.p]) + seen.h, seen.x - images.x[way.p]
+    n_images = 2.0 * way.left * (way.left + 1.0) + 1.0
+    several, power = (n_images, lanes_of(n_images)), way.walls * behind
+    bound = free_space(tables, hypot(h, aside)) * power
+    weight = apply_power_threshold(collector, workspace, way.least, bound, way.weight, several)
+    return Arriving(way.p, way.left, way.low, way.high, weight, way.walls, way.least)
+
+
+@jit(inline=True, fast=True)
+def add_images(
+    bundle: Bundle,
+    geometry: TraceGeometry,
+    tables: FieldTables,
+    beams: HorizontalEdgeBeams,
+    here: tuple[Block, Seen, Arriving],
+    shadow: Floats,
+    work: EdgeWorkspace,
+    collector: Collector,
+) -> Bundle:
+    """Add the paths from one image of the transmitter, one for every pair of image heights."""
+    (block, seen, way), edge, workspace = here, beams.edge, work.workspace
+    p, x, h = way.p, beams.images.x[way.p], beams.images.h[way.p]
+    z_in, bounces, one = geometry.transmitter_z, geometry.image_bounces, (1.0, lanes_of(1.0))
+    is_bounded, half = has_threshold(collector), (lanes_of(0.0), lanes_of(0.0))
+    order = int(beams.strips.link[block.beam, ORDER]) + int(beams.images.order[p])
+    for a in range(2 * way.left + 1):
+        across_in = math.sqrt(h * h + (z_in[a] - edge.z) ** 2)
+        if is_bounded:
+            half = halves_of(edge, lanes_of(h), lanes_of(z_in[a]), workspace.rows)
+        for b in range(2 * (way.left - bounces[a]) + 1):
+            across_out = load(work.across[b])
+            u = (across_out * x + seen.x * across_in) / (across_out + across_in)
+            weight = way.weight * weight_inside(u, way.low, way.high)
+            if is_bounded and any_of(weight > 0.0):
+                bound = quick_bound(tables, half, lanes_of(across_in), shadow[0], work, b)
+                bound = bound * way.walls
+                weight = apply_power_threshold(collector, workspace, way.least, bound, weight, one)
+            if not any_of(weight > 0.0):
+                continue
+            path = EdgePath(
+                edge, u, hypot(lanes_of(across_in), u - x), hypot(across_out, u - seen.x), h,
+                seen.h, z_in[a], load(workspace.image_z[b]), bounces[a], bounces[b],
+                beams.images.beam[p], block.beam, p, a, b, order + bounces[a] + bounces[b],
+            )  # fmt: skip
+            if is_bounded:
+                bound = way.walls * path_bound(geometry, tables, path, shadow, work)
+                weight = apply_power_threshold(collector, workspace, way.least, bound, weight, one)
+            if any_of(weight > 0.0):
+                trees = beams.tree, beams.strips
+                bundle = add_edge_paths(
+                    bundle, geometry, tables, trees, path, (block, weight), work, collector.record
+                )
+    return bundle
+
+
 @jit(fast=True, allocates=False)
 def sum_horizontal_edge(
     geometry: TraceGeometry,
     tables: FieldTables,
     beams: HorizontalEdgeBeams,
+    shadow: Floats,
     work: EdgeWorkspace,
     collector: Collector,
 ) -> None:
@@ -145,56 +353,41 @@ def sum_horizontal_edge(
         The geometry of the trace, and the tables of its fields.
     beams
         The edge, the beams to it and from it, and the receivers.
+    shadow
+        See `bounds.wedge_bound`; not read without a power threshold.
     work
         Scratch.
     collector
         Added to.
     """
     edge, images, hits, workspace = beams.edge, beams.images, beams.hits, work.workspace
-    z_in, bounces = geometry.transmitter_z, geometry.image_bounces
-    trees = beams.tree, beams.strips
-    through_walls = len(tables.transmission) > 0
-    power_behind = SHEET_POWER_THROUGH_WALLS if through_walls else SHEET_POWER
+    is_bounded = has_threshold(collector)
+    behind = 0.25 * (1.0 + math.sqrt(shadow[0])) ** 2 if is_bounded else 0.0
     first = int(np.int64(0))  # a literal would be compiled as a type of its own
     while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
-        least = least_power(collector, beams.strips.link[block.beam, CELL])
+        least = least_powers(collector, workspace)
         seen = seen_from(edge, beams.seen, block, work)
-        kept = beams.strips.frame[block.beam, FRACTION] * power_behind
+        if is_bounded:
+            set_halves(edge, seen, work)
+        out = geometry.max_reflections - int(beams.strips.link[block.beam, ORDER])
+        kept = beams.strips.frame[block.beam, FRACTION]
         bundle = empty_bundle()
         for p in range(len(images.order)):
-            order = beams.strips.link[block.beam, ORDER] + images.order[p]
-            budget = geometry.max_reflections - order
-            if budget < 0 or is_stopped(collector.guard):
+            left = out - int(images.order[p])
+            if left < 0 or is_stopped(collector.guard):
                 break
             low, high = maximum(seen.low, images.low[p]), minimum(seen.high, images.high[p])
-            weight_here = where(high - low > GRAZING_M, block.weight, 0.0)
-            if not any_of(weight_here > 0.0):
+            weight = where(may_cross(images, seen, p, left, work), block.weight, 0.0)
+            if not any_of(weight > 0.0):
                 continue
-            x, h = images.x[p], images.h[p]
-            if least > 0.0:
-                bound = free_space(tables, hypot(abs(h) + seen.h, seen.x - x)) * kept
-                bound = bound * images.fraction[p]
-                n_images = 2.0 * budget * (budget + 1.0) + 1.0
-                weight_here = apply_power_threshold(
-                    collector, workspace, least, bound, weight_here, n_images
-                )
-            for a in range(2 * budget + 1):
-                across_in = math.sqrt(h * h + (z_in[a] - edge.z) ** 2)
-                for b in range(2 * (budget - bounces[a]) + 1):
-                    across_out = load(work.across[b])
-                    u = (across_out * x + seen.x * across_in) / (across_out + across_in)
-                    weight = weight_here * weight_inside(u, low, high)
-                    if not any_of(weight > 0.0):
-                        continue
-                    path = EdgePath(
-                        edge, u, hypot(lanes_of(across_in), u - x),
-                        hypot(across_out, u - seen.x), h, seen.h, z_in[a],
-                        load(workspace.image_z[b]), bounces[a], bounces[b], images.beam[p],
-                        block.beam, p, a, b, order + bounces[a] + bounces[b], weight,
-                    )  # fmt: skip
-                    bundle = add_edge_paths(
-                        bundle, geometry, tables, trees, path, block, work, collector.record
-                    )
+            way = Arriving(p, left, low, high, weight, kept * images.fraction[p], least)
+            if is_bounded:
+                way = arriving_strongly(tables, images, seen, way, behind, workspace, collector)
+            if any_of(way.weight > 0.0):
+                here = block, seen, way
+                bundle = add_images(bundle, geometry, tables, beams, here, shadow, work, collector)
         add_bundle(collector.sums, workspace, block.n, bundle)
+        if is_bounded:
+            add_left_out(collector.sums, workspace, block.n)

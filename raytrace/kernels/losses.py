@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from raytrace.arrays import Floats
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.edge_losses import Directions, EdgeWays, largest_amplitude
 from raytrace.kernels.plan_view import PlanView, cross
 
 COSINE_BINS = 64
@@ -15,6 +16,9 @@ COSINE_BINS = 64
 
 ROUNDING = 1e-6
 """Intervals of cosines are widened by this fraction of a bin."""
+
+NEGLIGIBLE = 0.1
+"""Ways to an edge that bring less than this times the power limit are not examined further."""
 
 UNLIMITED = 1 << 20
 """A number of transmissions that no path has."""
@@ -36,21 +40,29 @@ class LossLimit(NamedTuple):
         Largest received fraction of the power at 1 m in free space, both antennas included [m^2].
     height, most_reflections
         Of the ceiling [m], and the reflections of whole paths.
-    reflectance, transmittance
+    wavelength
+        [m]
+    reflectance, transmittance, shadow
         (n_slabs, COSINE_BINS, COSINE_BINS) largest fraction of the power that a slab reflects or
-        transmits, between the cosines of one interval and of another.
+        transmits, and largest |1 - T'|^2 of its shadow, between the cosines of one interval and of
+        another.
+    is_alone
+        Whether single paths are compared with `least`, and not all of a beam together.
     roots
-        (max_reflections + 1, 3) by the beam's wall reflections: shortest length before the root
-        [m], the fraction of the power at the root that is compared with `least`, and the sum of
-        the fractions over all ways to the root, each times the number of paths that it may
-        continue to (`solver.loss_limits`).
+        (max_reflections + 1, 2) by the wall reflections of a beam from the transmitter: the
+        fraction of the power at the root that is compared with `least`, and the number of paths
+        that the beam may continue to (`solver.loss_limits`).
+    most_behind_edge
+        Largest power behind an edge, as a fraction of that of a free path as long.
+    edge_ways
+        Ways from the transmitter to a vertical edge.
     ways
         (n, 5) ways from the transmitter to a horizontal edge: wall reflections, shortest length
         [m], largest fraction of the power behind the edge, and the interval of the sines between
         their directions and the edge's normal in the plan view; n = 0 for other roots.
     further
-        (max_reflections + 1,) most paths that a beam continues to, by the reflections left; for
-        `ways`.
+        (max_reflections + 1,) most paths that a beam from an edge continues to, by the reflections
+        left.
     """
 
     is_active: bool
@@ -58,9 +70,14 @@ class LossLimit(NamedTuple):
     power_at_1m: float
     height: float
     most_reflections: int
+    wavelength: float
     reflectance: Floats
     transmittance: Floats
+    shadow: Floats
+    is_alone: bool
     roots: Floats
+    most_behind_edge: float
+    edge_ways: EdgeWays
     ways: Floats
     further: Floats
 
@@ -149,9 +166,8 @@ def largest_fraction(
         return 1.0
     rise = (limits.max_reflections - order + 1) * loss.height
     cos_elevation = met.nearest / math.sqrt(met.nearest * met.nearest + rise * rise)
-    low = max(int(met.least * cos_elevation * COSINE_BINS - ROUNDING), 0)
-    low, high = min(low, COSINE_BINS - 1), int(met.largest * COSINE_BINS + ROUNDING)
-    high = min(high, COSINE_BINS - 1)
+    low = cosine_bin(met.least * cos_elevation)
+    high = min(int(met.largest * COSINE_BINS + ROUNDING), COSINE_BINS - 1)
     table = loss.reflectance if how == IS_MIRRORED else loss.transmittance
     largest = 0.0
     for k in range(view.profile_intervals[profile], view.profile_intervals[profile + 1]):
@@ -161,20 +177,14 @@ def largest_fraction(
     return largest
 
 
-@jit(inline=True)
-def arriving_power(limits: Limits, order: int, distance: float, column: int) -> float:
-    """Bound on the received fraction of the power at a distance [m] from the root.
-
-    `column` of `LossLimit.roots`: 1 for what is compared with the limit, 2 for all paths together.
-    """
-    roots = limits.loss.roots
-    length = max(roots[order, 0] + distance, 1e-9)
-    return roots[order, column] * limits.loss.power_at_1m / (length * length)
-
-
 @jit(inner=True)
 def is_strong(
-    limits: Limits, order: int, cell: int, fraction: float, distance: float, left_out: Floats
+    limits: Limits,
+    order: int,
+    cell: int,
+    kept: tuple[float, float],
+    directions: Directions,
+    left_out: Floats,
 ) -> bool:
     """Whether a beam is grown; if not, all that it may continue to is added to `left_out`.
 
@@ -182,17 +192,92 @@ def is_strong(
     ----------
     limits, order, cell
         Limits, the beam's wall reflections, and the cell that it is in.
-    fraction, distance
+    kept
         Largest fraction of the power that it keeps, and its shortest length [m], from the root on.
+    directions
+        In which it leaves a vertical edge; not read for the transmitter.
     left_out
         (1,) bound on the power of all paths within beams that are not grown.
     """
-    if not limits.loss.is_active:
+    loss = limits.loss
+    if not loss.is_active:
         return True
-    if fraction * arriving_power(limits, order, distance, 1) >= limits.loss.least[cell]:
+    if len(loss.edge_ways.order) > 0:
+        return is_strong_behind_edge(limits, order, cell, kept, directions, left_out)
+    length = max(kept[1], 1e-9)
+    power = kept[0] * loss.power_at_1m / (length * length)
+    if power * loss.roots[order, 0] >= loss.least[cell]:
         return True
-    left_out[0] += fraction * arriving_power(limits, order, distance, 2)
+    left_out[0] += power * loss.roots[order, 1]
     return False
+
+
+@jit(inner=True)
+def is_strong_behind_edge(
+    limits: Limits,
+    order: int,
+    cell: int,
+    kept: tuple[float, float],
+    directions: Directions,
+    left_out: Floats,
+) -> bool:
+    """`is_strong` for a beam from a vertical edge, by the ways to it."""
+    loss, ways, (fraction, distance) = limits.loss, limits.loss.edge_ways, kept
+    least, together = loss.least[cell], 0.0
+    for k in range(len(ways.order)):
+        left = loss.most_reflections - order - int(ways.order[k])
+        if left < 0:
+            break
+        length = max(ways.length[k] + distance, 1e-9)
+        free = fraction * ways.fraction[k] * loss.power_at_1m / (length * length)
+        power = free * loss.most_behind_edge
+        if power >= NEGLIGIBLE * least:
+            amplitude = amplitude_over_edge(loss, k, distance, left, directions)
+            power = free * amplitude * amplitude
+        together += power * loss.further[left]
+        if (power if loss.is_alone else together) >= least:
+            return True
+    left_out[0] += together
+    return False
+
+
+@jit(inner=True)
+def amplitude_over_edge(
+    loss: LossLimit, k: int, distance: float, left: int, directions: Directions
+) -> float:
+    """Bound on the field behind a vertical edge, over that of a free path as long on way k.
+
+    Parameters
+    ----------
+    loss, k
+        The limit, and the way.
+    distance, left
+        Least length behind the edge [m], and the reflections left to floor and ceiling.
+    directions
+        Behind the edge.
+    """
+    ways, wedge = loss.edge_ways, loss.edge_ways.wedge
+    total, rise = max(ways.length[k] + distance, 1e-9), (left + 1.0) * loss.height
+    sin_beta = total / math.sqrt(total * total + rise * rise)
+    product = max(ways.length[k] * distance, 1e-18)
+    size = math.sqrt(loss.wavelength * total / (product * sin_beta)) / (4.0 * math.pi * wedge.n)
+    o_low = cosine_bin(sin_beta * math.sqrt(directions.o_sine * ways.sines[k, 0]))
+    n_low = cosine_bin(sin_beta * math.sqrt(directions.n_sine * ways.sines[k, 1]))
+    reflected = (
+        math.sqrt(loss.reflectance[wedge.o_slab, o_low, COSINE_BINS - 1]),
+        math.sqrt(loss.reflectance[wedge.n_slab, n_low, COSINE_BINS - 1]),
+    )
+    through = 1.0
+    if wedge.is_sheet:
+        through = math.sqrt(loss.shadow[wedge.o_slab, o_low, COSINE_BINS - 1])
+    incoming = (ways.parts[k, 0], ways.parts[k, 1])
+    return largest_amplitude(wedge, incoming, directions, reflected, through, size)
+
+
+@jit(inline=True)
+def cosine_bin(cosine: float) -> int:
+    """Interval that a cosine of incidence lies in, or the one below if rounding could tell."""
+    return min(max(int(cosine * COSINE_BINS - ROUNDING), 0), COSINE_BINS - 1)
 
 
 @jit(inner=True)
@@ -234,11 +319,8 @@ def has_strong_way(
     slopes
         Of its rays, along the edge over away from it.
     """
-    fraction, distance = kept
-    if not is_strong(limits, order, cell, fraction, distance, left_out):
-        return False
-    loss = limits.loss
-    if len(loss.ways) == 0:
+    loss, (fraction, distance) = limits.loss, kept
+    if not loss.is_active:
         return True
     power, least = fraction * loss.power_at_1m, loss.least[cell]
     missing = 0.0
@@ -248,15 +330,16 @@ def has_strong_way(
         reflections, length = loss.ways[k, 0], loss.ways[k, 1]
         left = int(loss.most_reflections - reflections - order)
         if left < 0:
-            continue
+            break
         total, rise = max(length + distance, 1e-9), (left + 1.0) * loss.height
-        before = along_edge(loss.ways[k, 3], loss.ways[k, 4], length, rise)
-        behind = along_edge(low, high, distance, rise)
-        if before[0] > behind[1] or behind[0] > before[1]:
-            continue
         arriving = power * loss.ways[k, 2] / (total * total)
-        if arriving >= least:
-            return True
+        if arriving >= NEGLIGIBLE * least:
+            before = along_edge(loss.ways[k, 3], loss.ways[k, 4], length, rise)
+            behind = along_edge(low, high, distance, rise)
+            if before[0] > behind[1] or behind[0] > before[1]:
+                continue
         missing += arriving * loss.further[left]
+        if (arriving if loss.is_alone else missing) >= least:
+            return True
     left_out[0] += missing
     return False

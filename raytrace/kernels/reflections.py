@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.kernels.beam_hits import Hits
-from raytrace.kernels.beams import CELL, FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
+from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.blocks import next_block
-from raytrace.kernels.bounds import free_space, leg_bound
+from raytrace.kernels.bounds import all_heights, free_space, image_bound, leg_bound
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
@@ -30,9 +30,11 @@ from raytrace.kernels.workspace import (
     Collector,
     Workspace,
     add_bundle,
+    add_left_out,
     apply_power_threshold,
     count_path,
-    least_power,
+    has_threshold,
+    least_powers,
 )
 
 
@@ -72,7 +74,8 @@ def sum_reflections(
     while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
-        least = least_power(collector, tree.link[block.beam, CELL])
+        is_bounded = has_threshold(collector)
+        least = least_powers(collector, workspace)
         i = block.beam
         order = tree.link[i, ORDER]
         n, length, ux, uy = unfold(building.plan, tree.link, tree.beam, i, (block.x, block.y), leg)
@@ -82,12 +85,14 @@ def sum_reflections(
             (tree.beam[i, IMAGE_Y] - block.y) * inv_length,
         )
         n_images = 2 * (geometry.max_reflections - order) + 1
-        weight_here = block.weight
-        if least > 0.0:
+        weight_here, bound = block.weight, lanes_of(0.0)
+        if is_bounded:
             kept = leg_bound(geometry, tables, leg, n, length, order)
             bound = free_space(tables, length) * minimum(kept, tree.beam[i, FRACTION])
+            left = geometry.max_reflections - order
+            several = float(n_images), all_heights(collector.heights, left, length, building.height)
             weight_here = apply_power_threshold(
-                collector, workspace, least, bound, weight_here, float(n_images)
+                collector, workspace, least, bound, weight_here, several
             )
         bundle = empty_bundle()
         k, side, grazing = zero, zero, all_false()
@@ -97,6 +102,11 @@ def sum_reflections(
             n_transmissions, grazes = walls_met(building, leg, n, z_root, slope, offset)
             weight = weight_here * validity_weight(n_transmissions, geometry.max_transmissions)
             weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.5)
+            if is_bounded:
+                of_image = bound * image_bound(building, tables, slope, geometry.image_bounces[k])
+                weight = apply_power_threshold(
+                    collector, workspace, least, of_image, weight, (1.0, lanes_of(1.0))
+                )
             if any_of(weight > 0.0):
                 ray = new_ray(building, tables, slope, geometry.image_bounces[k])
                 wave = launch(tables, (ux, uy), ray.sin_elevation)
@@ -112,3 +122,5 @@ def sum_reflections(
                     record_paths(collector.record, at, -1, (-1, k, side), gain, weight)
             k, side = next_evaluation(k, side, grazing)
         add_bundle(collector.sums, workspace, block.n, bundle)
+        if is_bounded:
+            add_left_out(collector.sums, workspace, block.n)

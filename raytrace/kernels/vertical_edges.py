@@ -11,9 +11,16 @@ import numpy as np
 
 from raytrace.arrays import Floats
 from raytrace.kernels.beam_hits import Hits
-from raytrace.kernels.beams import CELL, FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
+from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.blocks import Block, next_block
-from raytrace.kernels.bounds import leg_bound, wedge_bound
+from raytrace.kernels.bounds import (
+    WEDGE_POWER,
+    all_heights,
+    free_space,
+    image_bound,
+    leg_bound,
+    wedge_bound,
+)
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
@@ -32,6 +39,7 @@ from raytrace.kernels.lanes import (
     sqrt,
     where,
 )
+from raytrace.kernels.losses import NEGLIGIBLE
 from raytrace.kernels.plan_view import GRAZING_M, in_building
 from raytrace.kernels.records import record_paths
 from raytrace.kernels.sums import Bundle, empty_bundle, with_path
@@ -57,9 +65,11 @@ from raytrace.kernels.workspace import (
     Collector,
     Workspace,
     add_bundle,
+    add_left_out,
     apply_power_threshold,
     count_path,
-    least_power,
+    has_threshold,
+    least_powers,
 )
 
 
@@ -70,6 +80,21 @@ class VerticalEdgeBeams(NamedTuple):
     legs: LegsIn
     tree: Tree
     hits: Hits
+
+
+class EdgeBounds(NamedTuple):
+    """Bounds on what arrives at an edge and leaves it; not read without a power threshold.
+
+    Attributes
+    ----------
+    legs
+        (n_legs,) see `vertical_edge_legs.bounds_of_legs`.
+    shadow
+        See `bounds.wedge_bound`.
+    """
+
+    legs: Floats
+    shadow: Floats
 
 
 class LegsOut(NamedTuple):
@@ -246,11 +271,16 @@ def add_pair(
     tables: FieldTables,
     block: Block,
     pair: Pair,
-    weight_here: Lanes,
+    here: tuple[Lanes, Lanes, Lanes],
     workspace: Workspace,
     collector: Collector,
 ) -> Bundle:
-    """Add the paths of a pair of legs, one for every image height."""
+    """Add the paths of a pair of legs, one for every image height.
+
+    `here` holds the weights of the receivers, a bound on the power of horizontal paths, and the
+    thresholds of `workspace.least_powers`.
+    """
+    weight_here, bound, least = here
     n_images = 2 * (geometry.max_reflections - pair.order) + 1
     common, inv_total = common_factor(pair.edge.wedge.n, tables.wavelength), 1.0 / pair.total
     k = side = int(np.int64(0))  # a literal would be compiled as a type of its own
@@ -261,6 +291,10 @@ def add_pair(
         n_transmissions, grazes = pair_walls(geometry, pair, slope, offset)
         weight = weight_here * validity_weight(n_transmissions, geometry.max_transmissions)
         weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.5)
+        if has_threshold(collector):
+            of_image = bound * image_bound(geometry.building, tables, slope, bounces)
+            one = 1.0, lanes_of(1.0)
+            weight = apply_power_threshold(collector, workspace, least, of_image, weight, one)
         if any_of(weight > 0.0):
             gain, distance = pair_gain(
                 geometry, tables, pair, slope, bounces, offset, n_transmissions
@@ -276,12 +310,45 @@ def add_pair(
     return bundle
 
 
+@jit(inner=True, fast=True)
+def pair_bound(
+    geometry: TraceGeometry,
+    tables: FieldTables,
+    beams: VerticalEdgeBeams,
+    p: int,
+    out: LegsOut,
+    limit: tuple[Floats, Lanes, Lanes],
+    collector: Collector,
+) -> tuple[Lanes, tuple[float, Lanes]]:
+    """Bound on the power of each path of a pair of legs.
+
+    `limit` holds the shadow of `EdgeBounds`, a bound on what all walls on the way leave, and the
+    power threshold. Also returns how many paths there are, and all of them together over the bound.
+    """
+    shadow, arriving, least = limit
+    least = where(least < math.inf, least, 0.0)  # paths that are counted by their bounds
+    legs, height = beams.legs, geometry.building.height
+    left = geometry.max_reflections - out.order - int(legs.order[p])
+    total, product = out.length + legs.length[p], out.length * legs.length[p]
+    several = 2.0 * left + 1.0, all_heights(collector.heights, left, total, height)
+    free = free_space(tables, total) * arriving
+    if not any_of(free * WEDGE_POWER >= least * NEGLIGIBLE):
+        return free * WEDGE_POWER, several
+    sqrt_2kl = sqrt((4.0 * math.pi / tables.wavelength) * product * (1.0 / total))
+    rise = (left + 1.0) * height
+    sin_beta = total / sqrt(total * total + rise * rise)
+    directions = out.angles, angles_of(legs, p)
+    behind = wedge_bound(tables, beams.edge.wedge, directions, shadow, sqrt_2kl, sin_beta)
+    few = free * WEDGE_POWER < least * NEGLIGIBLE
+    return free * where(few, WEDGE_POWER, behind), several
+
+
 @jit(fast=True, allocates=False)
 def sum_vertical_edge(
     geometry: TraceGeometry,
     tables: FieldTables,
     beams: VerticalEdgeBeams,
-    bounds_in: Floats,
+    bounds: EdgeBounds,
     leg: Leg,
     workspace: Workspace,
     collector: Collector,
@@ -294,8 +361,8 @@ def sum_vertical_edge(
         The geometry of the trace, and the tables of its fields.
     beams
         The edge, the legs and beams, and the receivers.
-    bounds_in
-        (n_legs,) see `vertical_edge_legs.bounds_of_legs`; not read without a power threshold.
+    bounds
+        Bounds on powers.
     leg, workspace
         Scratch.
     collector
@@ -306,11 +373,11 @@ def sum_vertical_edge(
     while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
-        least = least_power(collector, beams.tree.link[block.beam, CELL])
+        is_bounded, least = has_threshold(collector), least_powers(collector, workspace)
         out = legs_from_edge(geometry, beams, block, leg, workspace.rows)
         off_edge = where(out.length < GRAZING_M, 0.0, block.weight)
-        bound_out = lanes_of(1.0)
-        if least > 0.0:
+        bound_out = bound = lanes_of(1.0)
+        if is_bounded:
             bound_out = leg_bound(geometry, tables, leg, out.n, out.length, out.order)
             bound_out = minimum(bound_out, beams.tree.beam[block.beam, FRACTION])
         bundle = empty_bundle()
@@ -318,18 +385,19 @@ def sum_vertical_edge(
             n_images = 2 * (geometry.max_reflections - out.order - legs.order[p]) + 1
             if n_images < 0 or is_stopped(collector.guard):
                 break
-            pair = pair_of(tables, edge, legs, p, out)
             weight = off_edge * legs.weight[p]
-            if least > 0.0:
-                bound = wedge_bound(
-                    geometry, tables, edge.wedge.is_sheet,
-                    (pair.terms.cos_minus, pair.terms.cos_plus), pair.sqrt_2kl, pair.total,
-                    pair.order,
-                )  # fmt: skip
-                bound, n_paths = bound * bound_out * bounds_in[p], float(n_images)
-                weight = apply_power_threshold(collector, workspace, least, bound, weight, n_paths)
-            if any_of(weight > 0.0):
-                bundle = add_pair(
-                    bundle, geometry, tables, block, pair, weight, workspace, collector
+            if is_bounded:
+                arriving = bound_out * bounds.legs[p]
+                bound, several = pair_bound(
+                    geometry, tables, beams, p, out, (bounds.shadow, arriving, least), collector
                 )
+                weight = apply_power_threshold(collector, workspace, least, bound, weight, several)
+                if not any_of(weight > 0.0):
+                    continue
+            pair = pair_of(tables, edge, legs, p, out)
+            if any_of(weight > 0.0):
+                here = weight, bound, least
+                bundle = add_pair(bundle, geometry, tables, block, pair, here, workspace, collector)
         add_bundle(collector.sums, workspace, block.n, bundle)
+        if is_bounded:
+            add_left_out(collector.sums, workspace, block.n)

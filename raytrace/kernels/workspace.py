@@ -23,7 +23,10 @@ class Collector(NamedTuple):
     min_power
         Paths whose power is known to be below this are left out [fraction of the transmitted].
     least
-        (n_cells,) the same for the receivers in a cell of the plan.
+        (n_receivers,) the same for the paths to each receiver; empty where it is `min_power` for
+        all.
+    heights
+        (max_reflections + 1, LENGTHS + 1) see `bounds.height_sums`; not read without a threshold.
     guard
         May end the work.
     """
@@ -32,6 +35,7 @@ class Collector(NamedTuple):
     record: Record
     min_power: float
     least: Floats
+    heights: Floats
     guard: Guard
 
 
@@ -47,6 +51,8 @@ class Workspace(NamedTuple):
         in floor and ceiling [m].
     counts
         (max_reflections + 1, 8) paths to them by reflections.
+    left
+        (8,) bound on the power of paths to them that are left out.
     rows
         (FIRST_MOMENT + N_MOMENTS, 8) scratch.
     """
@@ -55,6 +61,7 @@ class Workspace(NamedTuple):
     levels: Ints
     image_z: Floats
     counts: Floats
+    left: Floats
     rows: Floats
 
 
@@ -65,6 +72,7 @@ def new_workspace(max_reflections: int) -> Workspace:
         np.full(WIDTH, -1, np.int64),
         np.empty((2 * max_reflections + 1, WIDTH)),
         np.empty((max_reflections + 1, WIDTH)),
+        np.zeros(WIDTH),
         np.empty((FIRST_MOMENT + N_MOMENTS, WIDTH)),
     )
 
@@ -99,19 +107,31 @@ def add_bundle(sums: Sums, workspace: Workspace, n: int, bundle: Bundle) -> None
 
 
 @jit(inline=True)
-def least_power(collector: Collector, cell: int) -> float:
-    """Power threshold of paths to the receivers in a cell."""
-    return max(collector.min_power, collector.least[cell])
+def has_threshold(collector: Collector) -> bool:
+    """Whether there is a power threshold."""
+    return collector.min_power > 0.0 or len(collector.least) > 0
+
+
+@jit(inline=True)
+def least_powers(collector: Collector, workspace: Workspace) -> Lanes:
+    """Power thresholds of paths to the receivers of a block, whose `left` is set to 0."""
+    store(workspace.left, lanes_of(0.0))
+    if len(collector.least) == 0:
+        return lanes_of(collector.min_power)
+    row = workspace.rows[0]
+    for j in range(WIDTH):
+        row[j] = max(collector.least[workspace.receivers[j]], collector.min_power)
+    return load(row)
 
 
 @jit(inline=True)
 def apply_power_threshold(
     collector: Collector,
     workspace: Workspace,
-    least: float,
+    least: Lanes,
     bound: Lanes,
     weight: Lanes,
-    n_paths: float,
+    several: tuple[float, Lanes],
 ) -> Lanes:
     """Set the weights of paths below the power threshold to 0 and record their bounds.
 
@@ -120,24 +140,33 @@ def apply_power_threshold(
     collector, workspace
         The sums, and the receivers.
     least
-        The threshold, see `least_power`.
-    bound, weight, n_paths
-        Bounds on the powers, the paths' weights, and how many there are at each receiver.
+        The thresholds, see `least_powers`.
+    bound, weight
+        Bound on the power of each path, and the paths' weights.
+    several
+        How many there are at each receiver, and a bound on all of them together over that on each.
     """
     below = bound < least
     if any_of(below & (weight > 0.0)):
-        left = where(below, weight, 0.0) * n_paths
-        add_left_out(collector.sums, workspace.receivers, bound, left, collector.min_power)
+        left = where(below, weight, 0.0)
+        store(workspace.left, load(workspace.left) + left * bound * several[1])
+        if math.isinf(collector.min_power):
+            count_left_out(collector.sums, bound, left * several[0])
     return where(below, 0.0, weight)
 
 
 @jit(inner=True)
-def add_left_out(sums: Sums, receivers: Ints, bound: Lanes, left: Lanes, min_power: float) -> None:
-    """Record numbers of paths that are left out at eight receivers, by their bounds."""
+def count_left_out(sums: Sums, bound: Lanes, left: Lanes) -> None:
+    """Count paths that are left out at eight receivers, by their bounds."""
     for j in range(WIDTH):
         power, n_paths = lane(bound, j), lane(left, j)
         if n_paths > 0.0:
-            sums.left_out[receivers[j]] += n_paths * power
-            if math.isinf(min_power):
-                level = int(-10.0 * math.log10(max(power, 1e-39)))
-                sums.bins[max(level, 0)] += n_paths
+            level = int(-10.0 * math.log10(max(power, 1e-39)))
+            sums.bins[max(level, 0)] += n_paths
+
+
+@jit(inner=True)
+def add_left_out(sums: Sums, workspace: Workspace, n: int) -> None:
+    """Add what is left out at the first n receivers of a block to the sums."""
+    for j in range(n):
+        sums.left_out[workspace.receivers[j]] += workspace.left[j]

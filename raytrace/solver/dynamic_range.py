@@ -39,17 +39,26 @@ def prepare_within_range(
     if math.isinf(config.dynamic_range_db):
         return prepare(scene, position, receivers, config, guard, limits)
     points, first = _points(scene, position[2])
+    both = np.concatenate([points, receivers])
     straight = replace(config, max_reflections=0, max_diffractions=0)
     limits = limits_from_transmitter(scene, straight, evaluation)
-    tracing = prepare(scene, position, points, straight, guard, limits)
-    least = _least(Reflections(tracing).sum_paths(evaluation).power, first, config, evaluation)
+    tracing = prepare(scene, position, both, straight, guard, limits)
+    power = _least(Reflections(tracing).sum_paths(evaluation).power, config, evaluation)
+    least = np.minimum.reduceat(power[: len(points)], first)
     limits = limits_from_transmitter(scene, config, evaluation, least)
-    tracing = prepare(scene, position, receivers, config, guard, limits)
+    tracing = prepare(scene, position, both, config, guard, limits)
+    least = np.concatenate([power[: len(points)], power[len(points) :]])
+    tracing = replace(tracing, least=least)
     if not config.max_diffractions:
-        return tracing
-    reflected = Reflections(with_receivers(tracing, points)).sum_paths(evaluation).power
-    loss = limits.loss._replace(least=_least(reflected, first, config, evaluation))
-    return replace(tracing, limits=limits._replace(loss=loss))
+        return replace(with_receivers(tracing, receivers), least=least[len(points) :])
+    power = _least(Reflections(tracing).sum_paths(evaluation).power, config, evaluation)
+    loss = limits.loss._replace(least=np.minimum.reduceat(power[: len(points)], first))
+    return replace(
+        with_receivers(tracing, receivers),
+        limits=limits._replace(loss=loss),
+        least=least[len(points) :],
+        least_diffracted=power[len(points) :],
+    )
 
 
 def _points(scene: Scene, z: float) -> tuple[Floats, Ints]:
@@ -65,7 +74,6 @@ def _points(scene: Scene, z: float) -> tuple[Floats, Ints]:
     return np.column_stack([xy, np.full(len(xy), z)]), first_of_cell
 
 
-def _least(power: Floats, first: Ints, config: TraceConfig, evaluation: Evaluation) -> Floats:
-    """Power (n_cells,) below which beams are not grown, from that at the points of each cell."""
-    below = np.minimum.reduceat(power, first) * 10.0 ** (-0.1 * config.dynamic_range_db)
-    return np.maximum(below, evaluation.min_power)
+def _least(power: Floats, config: TraceConfig, evaluation: Evaluation) -> Floats:
+    """Power below which paths are left out where that much arrives."""
+    return np.maximum(power * 10.0 ** (-0.1 * config.dynamic_range_db), evaluation.min_power)

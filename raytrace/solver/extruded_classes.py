@@ -10,6 +10,7 @@ from raytrace.config import TraceConfig
 from raytrace.geometry import edges
 from raytrace.kernels.beam_hits import Hits, hit_points, no_hits
 from raytrace.kernels.beams import FRACTION, ORDER, Tree, grow_tree, no_tree
+from raytrace.kernels.bounds import height_sums
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import Guard
 from raytrace.kernels.horizontal_edge_legs import (
@@ -40,7 +41,7 @@ from raytrace.kernels.vertical_edge_legs import (
     leg_bytes,
     legs_to_edge,
 )
-from raytrace.kernels.vertical_edges import VerticalEdgeBeams, sum_vertical_edge
+from raytrace.kernels.vertical_edges import EdgeBounds, VerticalEdgeBeams, sum_vertical_edge
 from raytrace.kernels.wedge import new_wedge
 from raytrace.kernels.workspace import Collector, new_workspace
 from raytrace.results.paths import Paths
@@ -50,8 +51,11 @@ from raytrace.solver.limits import check_whole, nbytes, taking
 from raytrace.solver.loss_limits import (
     Arrivals,
     continuations,
+    distances_to_cells,
     edge_power,
     limits_from_edge,
+    limits_from_vertical_edge,
+    shadow_of,
     strong_arrivals,
 )
 from raytrace.solver.path_class import Evaluation, KeptRecord, PathClass
@@ -108,11 +112,16 @@ class _BeamClass(ABC, Generic[Beams]):
         return taking(self._tracing.guard, nbytes(beams, self._tracing.tree), BEAMS)
 
     def _least(self) -> Floats:
-        return self._tracing.limits.loss.least
+        """See `Tracing.least`."""
+        return self._tracing.least_diffracted
 
-    def _new_sums(self) -> Sums:
-        geometry = self._tracing.geometry
-        return new_sums(len(geometry.receivers.xy), geometry.max_reflections)
+    def _collector(self, evaluation: Evaluation, record: Record, guard: Guard) -> Collector:
+        geometry, least = self._tracing.geometry, self._least()
+        heights = np.zeros((0, 0))
+        if len(least) or evaluation.min_power > 0.0:
+            heights = height_sums(geometry, evaluation.tables)
+        sums = new_sums(len(geometry.receivers.xy), geometry.max_reflections)
+        return Collector(sums, record, evaluation.min_power, least, heights, guard)
 
     def grow(self) -> int:
         """See `PathClass`."""
@@ -121,9 +130,10 @@ class _BeamClass(ABC, Generic[Beams]):
 
     def sum_paths(self, evaluation: Evaluation, beams: Ints | None = None) -> Sums:
         """See `PathClass`."""
-        (grown, left_out), sums = self._beams(), self._new_sums()
+        grown, left_out = self._beams()
         guard = self._guard_beside(grown)
-        collector = Collector(sums, no_record(), evaluation.min_power, self._least(), guard)
+        collector = self._collector(evaluation, no_record(), guard)
+        sums = collector.sums
         numbers = np.arange(self._n_beams(grown)) if beams is None else beams
         while len(numbers):
             batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
@@ -166,9 +176,7 @@ class _BeamClass(ABC, Generic[Beams]):
         for _ in range(2):
             taking(guard, int(record.used[0]) * self._path_bytes(beams), PATHS)
             record = new_record(int(record.used[0]))
-            collector = Collector(
-                self._new_sums(), record, evaluation.min_power, self._least(), guard
-            )
+            collector = self._collector(evaluation, record, guard)
             self._evaluate(beams, evaluation.tables, collector)
             check_whole(guard, True, PATHS)
         return beams, record
@@ -203,6 +211,9 @@ class Reflections(_BeamClass[ReflectionBeams]):
 
     def _grow(self) -> tuple[ReflectionBeams, float]:
         return ReflectionBeams(self._tracing.tree, no_hits()), self._tracing.left_out
+
+    def _least(self) -> Floats:
+        return self._tracing.least
 
     def _n_beams(self, beams: ReflectionBeams) -> int:
         return len(beams.tree.link)
@@ -251,7 +262,9 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
         to_edge = tree.beam[beams, :2] - (self._edge.x, self._edge.y)
         order, length = tree.link[beams, ORDER].astype(np.int64), np.hypot(*to_edge.T)
         arrivals = Arrivals(order, length, self._power_behind * tree.beam[beams, FRACTION])
-        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts)
+        place = np.array([self._edge.x, self._edge.y] * 2)
+        distances = distances_to_cells(t.scene.view, place)
+        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, distances)
         guard = taking(t.guard, len(kept) * leg_bytes(tree), LEGS)
         view = t.scene.view
         legs = legs_to_edge(view, tree, beams[kept], weight[kept], self._edge, guard)
@@ -262,8 +275,7 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
         t, (legs, left_out) = self._tracing, self._legs_in()
         tree = no_tree()
         if len(legs.order):
-            arrivals = Arrivals(legs.order, legs.length, self._power_behind * legs.fraction)
-            limits = limits_from_edge(arrivals, t.limits, self._counts)
+            limits = limits_from_vertical_edge(self._edge, legs, t.limits, self._counts)
             root = (self._edge.x, self._edge.y)
             guard = taking(t.guard, nbytes(legs), LEGS)
             tree, behind, is_whole = grow_tree(
@@ -288,9 +300,11 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
     def _evaluate(
         self, beams: VerticalEdgeBeams, tables: FieldTables, collector: Collector
     ) -> None:
-        geometry, leg, bounds = self._tracing.geometry, new_leg(beams.tree.link), np.empty(0)
-        if collector.min_power > 0.0 or collector.least.any():
-            bounds = bounds_of_legs(geometry, tables, beams.legs)
+        geometry, leg = self._tracing.geometry, new_leg(beams.tree.link)
+        bounds = EdgeBounds(np.empty(0), np.empty(0))
+        if collector.min_power > 0.0 or len(collector.least):
+            shadow = shadow_of(self._tracing.limits, tables, self._edge.wedge.o_slab)
+            bounds = EdgeBounds(bounds_of_legs(geometry, tables, beams.legs), shadow)
         workspace = new_workspace(geometry.max_reflections)
         sum_vertical_edge(geometry, tables, beams, bounds, leg, workspace, collector)
 
@@ -337,18 +351,32 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
         turned = (t.partial_walls[mine, 0] == self._far)[:, None]
         interval = np.where(turned, 1.0 - interval[:, ::-1], interval) * length
         frame, image = self._edge.frame, t.tree.beam[beams]
+        h = frame[3] * image[:, 0] + frame[4] * image[:, 1] + frame[5]
+        nearest, farthest = self._distances(h)
         images = ImagesIn(
             order=t.tree.link[beams, ORDER].astype(np.int64),
             beam=beams.astype(np.int64),
             x=frame[0] * image[:, 0] + frame[1] * image[:, 1] + frame[2],
-            h=frame[3] * image[:, 0] + frame[4] * image[:, 1] + frame[5],
+            h=h,
             low=np.ascontiguousarray(interval[:, 0]),
             high=np.ascontiguousarray(interval[:, 1]),
             fraction=np.ascontiguousarray(image[:, FRACTION]),
+            nearest=nearest,
+            farthest=farthest,
         )
-        kept, left_out = strong_arrivals(self._arrivals(images), t.limits, self._counts)
+        distances = distances_to_cells(t.scene.view, t.scene.view.ends[self._near])
+        arrivals = self._arrivals(images)
+        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, distances)
         columns: Any = images
         return ImagesIn(*(column[kept] for column in columns)), left_out
+
+    def _distances(self, h: Floats) -> tuple[Floats, Floats]:
+        """See `ImagesIn.nearest` and `farthest`, for images (n,) that far off in the plan view."""
+        across = np.hypot(h[:, None], self._tracing.geometry.transmitter_z - self._edge.z)
+        columns = [across[:, :1], *(across[:, k : k + 2] for k in range(1, across.shape[1], 2))]
+        near = np.column_stack([c.min(axis=1) for c in columns])
+        far = np.column_stack([c.max(axis=1) for c in columns])
+        return np.minimum.accumulate(near, axis=1), np.maximum.accumulate(far, axis=1)
 
     def _arrivals(self, images: ImagesIn) -> Arrivals:
         aside = np.maximum(np.maximum(images.low - images.x, images.x - images.high), 0.0)
@@ -387,8 +415,13 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
         self, beams: HorizontalEdgeBeams, tables: FieldTables, collector: Collector
     ) -> None:
         geometry = self._tracing.geometry
-        work = new_edge_workspace(geometry.max_reflections, beams.tree, beams.strips)
-        sum_horizontal_edge(geometry, tables, beams, work, collector)
+        work, shadow = (
+            new_edge_workspace(geometry.max_reflections, beams.tree, beams.strips),
+            np.empty(0),
+        )
+        if collector.min_power > 0.0 or len(collector.least):
+            shadow = shadow_of(self._tracing.limits, tables, self._edge.wedge.o_slab)
+        sum_horizontal_edge(geometry, tables, beams, shadow, work, collector)
 
     def _write_points(
         self, beams: HorizontalEdgeBeams, record: Record, points: Floats, steps: Steps

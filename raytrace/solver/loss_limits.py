@@ -8,11 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from raytrace.arrays import Floats, Ints
+from raytrace.arrays import Complexes, Floats, Ints
 from raytrace.config import TraceConfig
 from raytrace.kernels.bounds import SHEET_POWER, SHEET_POWER_THROUGH_WALLS, WEDGE_POWER
+from raytrace.kernels.edge_losses import EdgeWays
 from raytrace.kernels.field_tables import FieldTables
-from raytrace.kernels.losses import COSINE_BINS, UNLIMITED, Limits, LossLimit
+from raytrace.kernels.losses import COSINE_BINS, UNLIMITED, Limits
+from raytrace.kernels.plan_view import PlanView
+from raytrace.kernels.vertical_edge_legs import LegsIn, VerticalEdgeArrays
 from raytrace.kernels.wedge import new_wedge
 from raytrace.scene import Scene
 from raytrace.solver.path_class import Evaluation
@@ -99,51 +102,81 @@ def limits_from_transmitter(
         least = np.full(len(limits.loss.least), evaluation.min_power)
     if not least.any():
         return limits
-    tables, roots = evaluation.tables, np.zeros((config.max_reflections + 1, 3))
-    roots[:, 2] = _with_edges(scene, config)[::-1]
-    roots[:, 1] = 1.0 if config.max_transmissions is None else roots[:, 2]
-    loss = LossLimit(
-        True,
-        least,
-        (tables.wavelength / (4.0 * math.pi)) ** 2 * tables.peak_gain,
-        scene.height_m,
-        config.max_reflections,
-        slab_bounds(tables, tables.reflection, -1.0),
-        slab_bounds(tables, tables.transmission, 1.0),
-        roots,
-        np.zeros((0, 5)),
-        np.zeros(0),
+    tables, alone = evaluation.tables, is_alone(limits)
+    continued = _with_edges(scene, config)[::-1]
+    reflectance = slab_bounds(tables, *reflection_of(tables))
+    transmittance, shadow = np.zeros_like(reflectance), np.ones_like(reflectance)
+    if len(tables.transmission):
+        te, tm = transmission_of(tables)
+        transmittance, shadow = slab_bounds(tables, te, tm), slab_bounds(tables, 1.0 - te, 1.0 - tm)
+        shadow = shadow if alone else np.maximum(shadow, 1.0)
+    loss = limits.loss._replace(
+        is_active=True,
+        least=least,
+        power_at_1m=(tables.wavelength / (4.0 * math.pi)) ** 2 * tables.peak_gain,
+        wavelength=tables.wavelength,
+        reflectance=reflectance,
+        transmittance=transmittance,
+        shadow=shadow,
+        is_alone=alone,
+        roots=np.column_stack([np.ones_like(continued) if alone else continued, continued]),
     )
     return limits._replace(loss=loss)
 
 
-def slab_bounds(tables: FieldTables, table: Floats, sign: float) -> Floats:
-    """Largest fraction of the power between intervals of the cosine of incidence.
+def reflection_of(tables: FieldTables) -> tuple[Complexes, Complexes]:
+    """Tabulated R_te and R_tm (n_slabs, steps + 1) over the cosine of incidence."""
+    return _coefficients(tables, tables.reflection, -1.0)
+
+
+def transmission_of(tables: FieldTables) -> tuple[Complexes, Complexes]:
+    """Tabulated T_te and T_tm (n_slabs, steps + 1), relative to air."""
+    return _coefficients(tables, tables.transmission, 1.0)
+
+
+def _coefficients(tables: FieldTables, table: Floats, sign: float) -> tuple[Complexes, Complexes]:
+    """TE and TM; TE is (the difference of the table) sin^2 + sign TM."""
+    columns = table.reshape(-1, tables.slab_rows, 4)[:, :-1]
+    tm, mix = columns[..., 0] + 1j * columns[..., 1], columns[..., 2] + 1j * columns[..., 3]
+    return mix * (1.0 - np.linspace(0.0, 1.0, columns.shape[1]) ** 2) + sign * tm, tm
+
+
+def slab_bounds(tables: FieldTables, te: Complexes, tm: Complexes) -> Floats:
+    """Largest squared magnitude of either coefficient between intervals of the cosine of incidence.
 
     Parameters
     ----------
-    tables, table
-        All tables, and that of the reflections or transmissions.
-    sign
-        Of the TM coefficient in the other one: TE is (the difference of the table) sin^2 + sign TM.
+    tables
+        Their size.
+    te, tm
+        (n_slabs, steps + 1) coefficients at cosines from 0 to 1.
 
     Returns
     -------
     ndarray
         (n_slabs, COSINE_BINS, COSINE_BINS), see `losses.LossLimit`.
     """
-    columns = table.reshape(-1, tables.slab_rows, 4)[:, :-1]
-    tm, mix = columns[..., 0] + 1j * columns[..., 1], columns[..., 2] + 1j * columns[..., 3]
-    sine_squared = 1.0 - np.linspace(0.0, 1.0, columns.shape[1]) ** 2
-    te = mix * sine_squared + sign * tm
     power = INTERPOLATION * np.maximum(np.abs(tm), np.abs(te)) ** 2
-    each = (columns.shape[1] - 1) // COSINE_BINS
+    each = (tables.slab_rows - 2) // COSINE_BINS
     steps = [power[:, k * each : (k + 1) * each + 1] for k in range(COSINE_BINS)]
     within = np.stack([step.max(axis=1) for step in steps], axis=1)
     found = np.zeros((len(within), COSINE_BINS, COSINE_BINS))
     for low in range(COSINE_BINS):
         found[:, low, low:] = np.maximum.accumulate(within[:, low:], axis=1)
     return found
+
+
+def shadow_of(limits: Limits, tables: FieldTables, slab: int) -> Floats:
+    """Largest |1 - T'|^2 (COSINE_BINS + 1,) of a sheet's shadow at a cosine of incidence or above.
+
+    Where the number of transmissions ends paths, the shadow may also lack the transmitted field.
+    """
+    if not len(tables.transmission):
+        return np.ones(COSINE_BINS + 1)
+    te, tm = (part[slab : slab + 1] for part in transmission_of(tables))
+    found = slab_bounds(tables, 1.0 - te, 1.0 - tm)[0, :, -1]
+    found = np.append(found, found[-1])
+    return found if is_alone(limits) else np.maximum(found, 1.0)
 
 
 class Arrivals(NamedTuple):
@@ -170,8 +203,10 @@ class Arrivals(NamedTuple):
         return Arrivals(self.order[kept], self.length[kept], self.fraction[kept], sines)
 
 
-def strong_arrivals(arrivals: Arrivals, limits: Limits, counts: Floats) -> tuple[Ints, float]:
-    """Ways on which enough power arrives.
+def strong_arrivals(
+    arrivals: Arrivals, limits: Limits, counts: Floats, distances: Floats
+) -> tuple[Ints, float]:
+    """Ways on which enough power arrives for some cell of the plan.
 
     Parameters
     ----------
@@ -179,6 +214,8 @@ def strong_arrivals(arrivals: Arrivals, limits: Limits, counts: Floats) -> tuple
         All ways to an edge, and the limits from the transmitter.
     counts
         (max_reflections + 1,) see `Continuations`.
+    distances
+        (n_cells,) see `distances_to_cells`.
 
     Returns
     -------
@@ -188,29 +225,64 @@ def strong_arrivals(arrivals: Arrivals, limits: Limits, counts: Floats) -> tuple
     loss = limits.loss
     if not loss.is_active:
         return np.arange(len(arrivals.order)), 0.0
-    power = arrivals.fraction * loss.power_at_1m / np.maximum(arrivals.length, 1e-9) ** 2
-    together = power * counts[limits.max_reflections - arrivals.order]
-    compared = power if is_alone(limits) else together
-    is_strong = compared >= loss.least.min()
+    power = arrivals.fraction * loss.power_at_1m
+    further = counts[limits.max_reflections - arrivals.order]
+    length = np.maximum(arrivals.length[:, None] + distances, 1e-9)
+    compared = (power if loss.is_alone else power * further)[:, None] / length**2
+    is_strong = (compared >= loss.least).any(axis=1)
+    together = power * further / np.maximum(arrivals.length, 1e-9) ** 2
     return np.flatnonzero(is_strong), float(together[~is_strong].sum())
 
 
+def distances_to_cells(view: PlanView, segment: Floats) -> Floats:
+    """Shortest distances (n_cells,) [m] from a segment x, y, x, y that crosses no edge."""
+    ends, starts = view.ends.reshape(-1, 2, 2), view.cell_edges[:-1]
+    here = segment.reshape(2, 2)
+    found = [_to_segments(point, ends[:, 0], ends[:, 1]) for point in here]
+    found += [_to_segments(ends[:, k], here[0], here[1]) for k in (0, 1)]
+    return np.minimum.reduceat(np.min(found, axis=0), starts)
+
+
+def _to_segments(points: Floats, one: Floats, other: Floats) -> Floats:
+    """Distances (n,) between points and segments, either of which may be a single one."""
+    along, off = other - one, points - one
+    square = np.maximum((along**2).sum(axis=-1), 1e-30)
+    t = np.clip((off * along).sum(axis=-1) / square, 0.0, 1.0)
+    return np.linalg.norm(off - t[..., None] * along, axis=-1)
+
+
 def limits_from_edge(arrivals: Arrivals, limits: Limits, counts: Floats) -> Limits:
-    """Limits of beams from an edge that power arrives at, as for `strong_arrivals`."""
+    """Limits of beams from a horizontal edge that power arrives at."""
     order = limits.max_reflections - int(arrivals.order.min())
-    roots = np.zeros((order + 1, 3))
-    if limits.loss.is_active:
-        for n in range(order + 1):
-            mine = arrivals.at(np.flatnonzero(arrivals.order <= limits.max_reflections - n))
-            further = counts[limits.max_reflections - n - mine.order]
-            together = (mine.fraction * further).sum()
-            alone = mine.fraction.max() if is_alone(limits) else together
-            roots[n] = mine.length.min(), alone, together
-    ways = limits.loss.ways
-    if limits.loss.is_active and arrivals.sines is not None and is_alone(limits):
+    loss = limits.loss._replace(further=counts)
+    if loss.is_active and arrivals.sines is not None:
         columns = [arrivals.order, arrivals.length, arrivals.fraction, arrivals.sines]
-        ways = np.column_stack(columns)
-    loss = limits.loss._replace(roots=roots, ways=np.ascontiguousarray(ways), further=counts)
+        loss = loss._replace(ways=np.ascontiguousarray(np.column_stack(columns)))
+    return limits._replace(max_reflections=order, loss=loss)
+
+
+def limits_from_vertical_edge(
+    edge: VerticalEdgeArrays, legs: LegsIn, limits: Limits, counts: Floats
+) -> Limits:
+    """Limits of beams from a vertical edge, by the legs to it."""
+    order = limits.max_reflections - int(legs.order.min())
+    loss = limits.loss._replace(further=counts)
+    if loss.is_active:
+        n, half = edge.wedge.n, legs.angles[:, 1:3]
+        phi = 2.0 * np.arctan2(half[:, 1], half[:, 0])
+        ways = EdgeWays(
+            edge.wedge,
+            (math.cos(edge.o_face), math.sin(edge.o_face)),
+            legs.order,
+            legs.length,
+            legs.fraction,
+            np.column_stack([np.cos(phi / (2.0 * n)), np.sin(phi / (2.0 * n))]),
+            legs.angles[:, 5:7] ** 2,
+        )
+        most = WEDGE_POWER
+        if edge.wedge.is_sheet:
+            most = 0.25 * (1.0 + math.sqrt(loss.shadow[edge.wedge.o_slab].max())) ** 2
+        loss = loss._replace(most_behind_edge=most, edge_ways=ways)
     return limits._replace(max_reflections=order, loss=loss)
 
 

@@ -1,6 +1,6 @@
 """The beams from one transmitter to receivers in a scene, before any field is computed."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from raytrace.kernels.building import (
     image_bounces,
     image_heights,
 )
+from raytrace.kernels.edge_losses import no_edge_ways
 from raytrace.kernels.guard import Guard, no_guard
 from raytrace.kernels.losses import COSINE_BINS, UNLIMITED, Limits, LossLimit
 from raytrace.kernels.plan_view import GRAZING_M
@@ -51,6 +52,9 @@ class Tracing:
         (n, 2), (n, 2) partial walls that these beams meet, and which part of them.
     guard
         What may end the kernels, with the memory that is left.
+    least, least_diffracted
+        (n_receivers,) power below which paths are left out, those without and those with a
+        diffraction [fraction of the transmitted]; empty where it is the same for all receivers.
     """
 
     scene: Scene
@@ -65,6 +69,8 @@ class Tracing:
     partial_walls: Int32s
     intervals: Floats
     guard: Guard
+    least: Floats = field(default_factory=lambda: np.zeros(0))
+    least_diffracted: Floats = field(default_factory=lambda: np.zeros(0))
 
     def shared_by(self, threads: int) -> "Tracing":
         """Return the same, with the memory that is left for each of some threads."""
@@ -136,27 +142,40 @@ def limits_by_number(scene: Scene, config: TraceConfig) -> Limits:
     """Return the limits of beams from the transmitter, without one by loss."""
     order, transmissions = config.max_reflections, config.max_transmissions
     no_slabs = np.zeros((0, COSINE_BINS, COSINE_BINS))
-    least, roots = np.zeros(len(scene.view.cell_edges) - 1), np.zeros((order + 1, 3))
     loss = LossLimit(
-        False,
-        least,
-        0.0,
-        scene.height_m,
-        order,
-        no_slabs,
-        no_slabs,
-        roots,
-        np.zeros((0, 5)),
-        np.zeros(0),
+        is_active=False,
+        least=np.zeros(len(scene.view.cell_edges) - 1),
+        power_at_1m=0.0,
+        height=scene.height_m,
+        most_reflections=order,
+        wavelength=0.0,
+        reflectance=no_slabs,
+        transmittance=no_slabs,
+        shadow=no_slabs,
+        is_alone=False,
+        roots=np.zeros((order + 1, 2)),
+        most_behind_edge=0.0,
+        edge_ways=no_edge_ways(),
+        ways=np.zeros((0, 5)),
+        further=np.zeros(0),
     )
     return Limits(order, UNLIMITED if transmissions is None else transmissions, loss)
 
 
 def with_receivers(tracing: Tracing, receivers: Floats) -> Tracing:
-    """Return the same beams with other receivers (n, 3) [m], at heights between the others'."""
+    """Return the same beams with other receivers (n, 3) [m], at heights between the others'.
+
+    Their paths are limited by the beams alone.
+    """
     x, y, z = (float(coordinate) for coordinate in tracing.geometry.transmitter)
     geometry = _geometry(tracing.scene, (x, y, z), receivers, tracing.config)
-    return replace(tracing, geometry=geometry, targets=_targets(tracing.scene, receivers))
+    return replace(
+        tracing,
+        geometry=geometry,
+        targets=_targets(tracing.scene, receivers),
+        least=np.zeros(0),
+        least_diffracted=np.zeros(0),
+    )
 
 
 def _targets(scene: Scene, receivers: Floats) -> Targets:

@@ -25,7 +25,7 @@ from raytrace import (
 from raytrace.kernels.losses import COSINE_BINS
 from raytrace.radio.materials import MATERIALS, Slab
 from raytrace.radio.tables import field_tables
-from raytrace.solver.loss_limits import slab_bounds
+from raytrace.solver.loss_limits import reflection_of, slab_bounds, transmission_of
 
 MOST = 20
 """More transmissions than any path of the plans has."""
@@ -137,11 +137,12 @@ def test_slabs_keep_no_more_than_their_bounds(slab: Slab) -> None:
     cosines = np.linspace(0.0, 1.0, 20011)
     c = slab.material.coefficients(slab.thickness_m, transmitter.frequency_hz, cosines)
     at = np.minimum((cosines * COSINE_BINS).astype(int), COSINE_BINS - 1)
-    for table, sign, te, tm in (
-        (tables.reflection, -1.0, c.r_te, c.r_tm),
-        (tables.transmission, 1.0, c.t_te, c.t_tm),
+    c = c.relative_to_air(slab.thickness_m, transmitter.frequency_hz, cosines)
+    for tabulated, te, tm in (
+        (reflection_of(tables), c.r_te, c.r_tm),
+        (transmission_of(tables), c.t_te, c.t_tm),
     ):
-        bounds = slab_bounds(tables, table, sign)[0]
+        bounds = slab_bounds(tables, *tabulated)[0]
         power = np.maximum(np.abs(te), np.abs(tm)) ** 2
         assert (power <= bounds[at, at]).all()
         assert (np.diff(bounds, axis=1)[np.triu_indices(COSINE_BINS - 1)] >= 0.0).all()
