@@ -24,9 +24,10 @@ from raytrace.results.radio_map import RadioMap
 from raytrace.results.transmitter_maps import TransmitterMaps
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import Progress, sum_paths
+from raytrace.solver.beam_class import COPIES_OF_PATHS
 from raytrace.solver.dynamic_range import prepare_within_range
 from raytrace.solver.evaluation import evaluation_of
-from raytrace.solver.extruded_classes import COPIES_OF_PATHS, cells_bytes, path_classes
+from raytrace.solver.extruded_classes import cells_bytes, path_classes
 from raytrace.solver.limits import taking
 from raytrace.solver.path_class import Evaluation
 from raytrace.solver.setup import Tracing

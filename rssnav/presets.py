@@ -7,6 +7,7 @@ from typing import Literal
 
 import floorplans
 from raytrace import Antenna, HalfWaveDipole, Isotropic, TraceConfig
+from raytrace.config import SENSITIVITY_DBM
 
 PresetName = Literal["paper", "building"]
 
@@ -32,6 +33,10 @@ PRESETS: dict[PresetName, Preset] = {
 }
 """``paper`` has opaque walls and vertical dipoles, as the reproduced paper has; ``building`` lets
 waves through walls, and knows nothing of the antennas."""
+
+
+BY_LOSS = {"min_power_dbm": SENSITIVITY_DBM, "dynamic_range_db": 25.0}
+"""Limits of a trace whose transmissions have no maximum number."""
 
 
 def default_preset(plan: str) -> PresetName:

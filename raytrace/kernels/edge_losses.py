@@ -135,7 +135,7 @@ def largest_amplitude(
     through: float,
     size: float,
 ) -> float:
-    """Largest field behind an edge over that of a free path as long (docs/theory.md, eq. 45a).
+    """Largest field behind an edge over that of a free path as long (docs/theory.md, eq. 47).
 
     Parameters
     ----------

@@ -118,11 +118,12 @@ class EdgeWorkspace(NamedTuple):
     halves: Floats
 
 
-def new_edge_workspace(max_reflections: int, tree: Tree, strips: StripTree) -> EdgeWorkspace:
-    """Working arrays for the paths between two sets of beams."""
+def new_edge_workspace(max_reflections: int, beams: HorizontalEdgeBeams) -> EdgeWorkspace:
+    """Working arrays for the paths over an edge."""
+    strips = beams.strips
     return EdgeWorkspace(
         new_workspace(max_reflections),
-        new_leg(tree.link),
+        new_leg(beams.tree.link[beams.images.beam]),
         new_leg(strips.link),
         np.empty((len(strips.link), 2, WIDTH)),
         np.empty((2 * max_reflections + 1, WIDTH)),

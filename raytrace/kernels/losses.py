@@ -56,6 +56,10 @@ class LossLimit(NamedTuple):
         Largest power behind an edge, as a fraction of that of a free path as long.
     edge_ways
         Ways from the transmitter to a vertical edge.
+    ranks
+        (n, 4) of the ways to an edge, by rising number of reflections and then by falling strength:
+        strength, that is fraction over squared length [1/m^2]; the sum of strengths from here to
+        the last way of as many reflections; its number plus 1; and the largest length of them [m].
     ways
         (n, 5) ways from the transmitter to a horizontal edge: wall reflections, shortest length
         [m], largest fraction of the power behind the edge, and the interval of the sines between
@@ -78,6 +82,7 @@ class LossLimit(NamedTuple):
     roots: Floats
     most_behind_edge: float
     edge_ways: EdgeWays
+    ranks: Floats
     ways: Floats
     further: Floats
 
@@ -223,11 +228,16 @@ def is_strong_behind_edge(
 ) -> bool:
     """`is_strong` for a beam from a vertical edge, by the ways to it."""
     loss, ways, (fraction, distance) = limits.loss, limits.loss.edge_ways, kept
-    least, together = loss.least[cell], 0.0
-    for k in range(len(ways.order)):
+    least, together, k = loss.least[cell], 0.0, 0
+    while k < len(ways.order):
         left = loss.most_reflections - order - int(ways.order[k])
         if left < 0:
             break
+        rest, skips = all_from(loss, k, fraction * loss.most_behind_edge, distance, least)
+        if skips:
+            together += rest * loss.further[left]
+            k = int(loss.ranks[k, 2])
+            continue
         length = max(ways.length[k] + distance, 1e-9)
         free = fraction * ways.fraction[k] * loss.power_at_1m / (length * length)
         power = free * loss.most_behind_edge
@@ -237,8 +247,23 @@ def is_strong_behind_edge(
         together += power * loss.further[left]
         if (power if loss.is_alone else together) >= least:
             return True
+        k += 1
     left_out[0] += together
     return False
+
+
+@jit(inline=True)
+def all_from(
+    loss: LossLimit, k: int, kept: float, distance: float, least: float
+) -> tuple[float, bool]:
+    """Bound on the power by way k and all weaker ones of as many reflections, if it is negligible.
+
+    `kept` is the largest fraction of the power behind the edge; also returns whether it is.
+    """
+    longest = loss.ranks[k, 3]
+    nearer = longest / (longest + distance)
+    power = kept * loss.power_at_1m * nearer * nearer
+    return power * loss.ranks[k, 1], power * loss.ranks[k, 0] < NEGLIGIBLE * least
 
 
 @jit(inner=True)
@@ -323,18 +348,24 @@ def has_strong_way(
     if not loss.is_active:
         return True
     power, least = fraction * loss.power_at_1m, loss.least[cell]
-    missing = 0.0
+    missing, k = 0.0, 0
     low = slopes[0] / math.hypot(1.0, slopes[0])
     high = slopes[1] / math.hypot(1.0, slopes[1])
-    for k in range(len(loss.ways)):
+    while k < len(loss.ways):
         reflections, length = loss.ways[k, 0], loss.ways[k, 1]
         left = int(loss.most_reflections - reflections - order)
         if left < 0:
             break
+        rest, skips = all_from(loss, k, fraction, distance, least)
+        if skips:
+            missing += rest * loss.further[left]
+            k = int(loss.ranks[k, 2])
+            continue
+        k += 1
         total, rise = max(length + distance, 1e-9), (left + 1.0) * loss.height
-        arriving = power * loss.ways[k, 2] / (total * total)
+        arriving = power * loss.ways[k - 1, 2] / (total * total)
         if arriving >= NEGLIGIBLE * least:
-            before = along_edge(loss.ways[k, 3], loss.ways[k, 4], length, rise)
+            before = along_edge(loss.ways[k - 1, 3], loss.ways[k - 1, 4], length, rise)
             behind = along_edge(low, high, distance, rise)
             if before[0] > behind[1] or behind[0] > before[1]:
                 continue

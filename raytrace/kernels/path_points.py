@@ -43,8 +43,7 @@ from raytrace.kernels.unfolding import (
     unfold,
 )
 from raytrace.kernels.validity import ONE_SIDED_OFFSETS_M
-from raytrace.kernels.vertical_edge_legs import angles_of
-from raytrace.kernels.vertical_edges import VerticalEdgeBeams
+from raytrace.kernels.vertical_edge_legs import VerticalEdgeBeams, angles_of
 from raytrace.kernels.wedge_steps import (
     horizontal_terms,
     vertical_terms,

@@ -6,11 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from raytrace.arrays import Bools, Floats, Int32s, Ints
+from raytrace.kernels.beam_hits import Hits
 from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
-from raytrace.kernels.bounds import leg_bound
-from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import Guard, is_stopped
 from raytrace.kernels.lanes import WIDTH, Lanes, lane, lanes_of
 from raytrace.kernels.plan_view import PlanView
@@ -70,6 +68,40 @@ class LegsIn(NamedTuple):
     types: Ints
 
 
+class VerticalEdgeBeams(NamedTuple):
+    """An edge, the legs to it, the beams from it, and the receivers visible from these."""
+
+    edge: VerticalEdgeArrays
+    legs: LegsIn
+    tree: Tree
+    hits: Hits
+
+
+class LegsOut(NamedTuple):
+    """Eight legs from the edge, of one beam.
+
+    Attributes
+    ----------
+    leg, n, length, inv_length, order
+        The legs, their interactions, horizontal lengths [m] and their inverses, and reflections.
+    angles
+        The directions at the wedge.
+    arriving
+        Horizontal directions that the paths come from.
+    has_height_limits
+        See `unfolding.has_height_limits`.
+    """
+
+    leg: Leg
+    n: int
+    length: Lanes
+    inv_length: Lanes
+    order: int
+    angles: FaceAngles
+    arriving: tuple[Lanes, Lanes]
+    has_height_limits: bool
+
+
 @jit(inline=True)
 def angles_towards(edge: VerticalEdgeArrays, ux: Lanes, uy: Lanes, rows: Floats) -> FaceAngles:
     """Angles of horizontal directions from the o-face; `rows` is scratch."""
@@ -87,9 +119,9 @@ def angles_of(legs: LegsIn, p: int) -> FaceAngles:
     )  # fmt: skip
 
 
-def leg_bytes(tree: Tree) -> int:
-    """Size of a row of `LegsIn`."""
-    return 15 * 8 + max_interactions(tree.link) * (5 * WIDTH + 2) * 8
+def leg_bytes(link: Int32s) -> int:
+    """Size of a row of `LegsIn` where the legs are those of some beams."""
+    return 15 * 8 + max_interactions(link) * (5 * WIDTH + 2) * 8
 
 
 def legs_to_edge(
@@ -114,7 +146,7 @@ def legs_to_edge(
     guard
         May end the work.
     """
-    n, n_max = len(beams), max_interactions(tree.link)
+    n, n_max = len(beams), max_interactions(tree.link[beams])
     legs = LegsIn(
         np.empty(n, np.int64),
         np.empty(n, np.int64),
@@ -166,15 +198,3 @@ def fill_legs(
             legs.angles[kept, k] = lane(angle, 0)
         kept += 1
     return kept
-
-
-@jit()
-def bounds_of_legs(geometry: TraceGeometry, tables: FieldTables, legs: LegsIn) -> Floats:
-    """Bound on the power that arrives by each leg (n,), see `bounds.leg_bound`."""
-    bounds = np.empty(len(legs.order))
-    for p in range(len(legs.order)):
-        leg, length = Leg(legs.interactions[p], legs.types[p]), lanes_of(legs.length[p])
-        n, order = int(legs.n_interactions[p]), int(legs.order[p])
-        bound = lane(leg_bound(geometry, tables, leg, n, length, order), 0)
-        bounds[p] = min(bound, legs.fraction[p])
-    return bounds

@@ -10,16 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Floats
-from raytrace.kernels.beam_hits import Hits
-from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
+from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER
 from raytrace.kernels.blocks import Block, next_block
 from raytrace.kernels.bounds import (
-    WEDGE_POWER,
-    all_heights,
-    free_space,
     image_bound,
     leg_bound,
-    wedge_bound,
 )
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
@@ -39,7 +34,6 @@ from raytrace.kernels.lanes import (
     sqrt,
     where,
 )
-from raytrace.kernels.losses import NEGLIGIBLE
 from raytrace.kernels.plan_view import GRAZING_M, in_building
 from raytrace.kernels.records import record_paths
 from raytrace.kernels.sums import Bundle, empty_bundle, with_path
@@ -53,14 +47,16 @@ from raytrace.kernels.validity import (
     validity_weight,
     walls_met,
 )
+from raytrace.kernels.vertical_edge_bounds import EdgeBounds, pair_bound
 from raytrace.kernels.vertical_edge_legs import (
     LegsIn,
+    LegsOut,
     VerticalEdgeArrays,
+    VerticalEdgeBeams,
     angles_of,
     angles_towards,
 )
 from raytrace.kernels.waves import Wave, launch, receive
-from raytrace.kernels.wedge import FaceAngles
 from raytrace.kernels.workspace import (
     Collector,
     Workspace,
@@ -71,55 +67,6 @@ from raytrace.kernels.workspace import (
     has_threshold,
     least_powers,
 )
-
-
-class VerticalEdgeBeams(NamedTuple):
-    """An edge, the legs to it, the beams from it, and the receivers visible from these."""
-
-    edge: VerticalEdgeArrays
-    legs: LegsIn
-    tree: Tree
-    hits: Hits
-
-
-class EdgeBounds(NamedTuple):
-    """Bounds on what arrives at an edge and leaves it; not read without a power threshold.
-
-    Attributes
-    ----------
-    legs
-        (n_legs,) see `vertical_edge_legs.bounds_of_legs`.
-    shadow
-        See `bounds.wedge_bound`.
-    """
-
-    legs: Floats
-    shadow: Floats
-
-
-class LegsOut(NamedTuple):
-    """Eight legs from the edge, of one beam.
-
-    Attributes
-    ----------
-    leg, n, length, inv_length, order
-        The legs, their interactions, horizontal lengths [m] and their inverses, and reflections.
-    angles
-        The directions at the wedge.
-    arriving
-        Horizontal directions that the paths come from.
-    has_height_limits
-        See `unfolding.has_height_limits`.
-    """
-
-    leg: Leg
-    n: int
-    length: Lanes
-    inv_length: Lanes
-    order: int
-    angles: FaceAngles
-    arriving: tuple[Lanes, Lanes]
-    has_height_limits: bool
 
 
 class Pair(NamedTuple):
@@ -308,39 +255,6 @@ def add_pair(
                 record_paths(collector.record, at, pair.number, images, gain, weight)
         k, side = next_evaluation(k, side, grazing)
     return bundle
-
-
-@jit(inner=True, fast=True)
-def pair_bound(
-    geometry: TraceGeometry,
-    tables: FieldTables,
-    beams: VerticalEdgeBeams,
-    p: int,
-    out: LegsOut,
-    limit: tuple[Floats, Lanes, Lanes],
-    collector: Collector,
-) -> tuple[Lanes, tuple[float, Lanes]]:
-    """Bound on the power of each path of a pair of legs.
-
-    `limit` holds the shadow of `EdgeBounds`, a bound on what all walls on the way leave, and the
-    power threshold. Also returns how many paths there are, and all of them together over the bound.
-    """
-    shadow, arriving, least = limit
-    least = where(least < math.inf, least, 0.0)  # paths that are counted by their bounds
-    legs, height = beams.legs, geometry.building.height
-    left = geometry.max_reflections - out.order - int(legs.order[p])
-    total, product = out.length + legs.length[p], out.length * legs.length[p]
-    several = 2.0 * left + 1.0, all_heights(collector.heights, left, total, height)
-    free = free_space(tables, total) * arriving
-    if not any_of(free * WEDGE_POWER >= least * NEGLIGIBLE):
-        return free * WEDGE_POWER, several
-    sqrt_2kl = sqrt((4.0 * math.pi / tables.wavelength) * product * (1.0 / total))
-    rise = (left + 1.0) * height
-    sin_beta = total / sqrt(total * total + rise * rise)
-    directions = out.angles, angles_of(legs, p)
-    behind = wedge_bound(tables, beams.edge.wedge, directions, shadow, sqrt_2kl, sin_beta)
-    few = free * WEDGE_POWER < least * NEGLIGIBLE
-    return free * where(few, WEDGE_POWER, behind), several
 
 
 @jit(fast=True, allocates=False)

@@ -1,7 +1,6 @@
 """The path classes of an extruded building: reflected only, over a vertical, a horizontal edge."""
 
-from abc import ABC, abstractmethod
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +9,6 @@ from raytrace.config import TraceConfig
 from raytrace.geometry import edges
 from raytrace.kernels.beam_hits import Hits, hit_points, no_hits
 from raytrace.kernels.beams import FRACTION, ORDER, Tree, grow_tree, no_tree
-from raytrace.kernels.bounds import height_sums
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import Guard
 from raytrace.kernels.horizontal_edge_legs import (
@@ -27,26 +25,27 @@ from raytrace.kernels.path_points import (
     vertical_edge_points,
 )
 from raytrace.kernels.plan_view import GRAZING_M
-from raytrace.kernels.records import Record, new_record, no_record
+from raytrace.kernels.records import Record
 from raytrace.kernels.reflections import ReflectionBeams, sum_reflections
-from raytrace.kernels.steps import PATH_BYTES, STEP_BYTES, Steps, new_steps
+from raytrace.kernels.steps import Steps
 from raytrace.kernels.strip_hits import hit_from_strip
 from raytrace.kernels.strips import edge_frame, grow_strips, no_strips
-from raytrace.kernels.sums import Sums, new_sums, sums_bytes
+from raytrace.kernels.sums import sums_bytes
 from raytrace.kernels.unfolding import max_interactions, new_leg
+from raytrace.kernels.vertical_edge_bounds import EdgeBounds, bounds_of_legs
 from raytrace.kernels.vertical_edge_legs import (
     LegsIn,
     VerticalEdgeArrays,
-    bounds_of_legs,
+    VerticalEdgeBeams,
     leg_bytes,
     legs_to_edge,
 )
-from raytrace.kernels.vertical_edges import EdgeBounds, VerticalEdgeBeams, sum_vertical_edge
+from raytrace.kernels.vertical_edges import sum_vertical_edge
 from raytrace.kernels.wedge import new_wedge
 from raytrace.kernels.workspace import Collector, new_workspace
-from raytrace.results.paths import Paths
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import sums_in_work
+from raytrace.solver.beam_class import BeamClass
 from raytrace.solver.limits import check_whole, nbytes, taking
 from raytrace.solver.loss_limits import (
     Arrivals,
@@ -58,155 +57,16 @@ from raytrace.solver.loss_limits import (
     shadow_of,
     strong_arrivals,
 )
-from raytrace.solver.path_class import Evaluation, KeptRecord, PathClass
+from raytrace.solver.path_class import PathClass
 from raytrace.solver.setup import BEAMS, Tracing
-
-HIT_BATCH = 1 << 17
-"""Hits that are found and evaluated in one batch, which bounds the memory of large maps."""
-
-ALL_HITS = 1 << 62
 
 RECEIVER_BYTES = 240
 """Memory of a receiver and of its results, without sums."""
 
-COPIES_OF_PATHS = 3
-"""Most copies of a list of paths that exist at a time, while it is sorted."""
-
-HITS, LEGS, PATHS = "the receivers within the beams", "the legs to an edge", "the paths"
-
-Beams = TypeVar("Beams", ReflectionBeams, VerticalEdgeBeams, HorizontalEdgeBeams)
+LEGS = "the legs to an edge"
 
 
-class _BeamClass(ABC, Generic[Beams]):
-    """A `PathClass` whose paths are found by beams from the transmitter or an edge."""
-
-    def __init__(self, tracing: Tracing) -> None:
-        self._tracing = tracing
-        self._kept: tuple[Beams, float] | None = None
-
-    @abstractmethod
-    def _grow(self) -> tuple[Beams, float]:
-        """Grow the beams, which have no hits yet; also bound the power in those not grown."""
-
-    @abstractmethod
-    def _n_beams(self, beams: Beams) -> int:
-        """Count the beams that receivers are visible from."""
-
-    @abstractmethod
-    def _hit(self, beams: Beams, numbers: Ints, max_hits: int, guard: Guard) -> tuple[Beams, int]:
-        """Find receivers within some of the beams; return how many of the beams were taken."""
-
-    @abstractmethod
-    def _evaluate(self, beams: Beams, tables: FieldTables, collector: Collector) -> None:
-        """Evaluate the paths of all hits."""
-
-    @abstractmethod
-    def _write_points(self, beams: Beams, record: Record, points: Floats, steps: Steps) -> None:
-        """Write points (n or 1, k, 3) [m] and steps of recorded paths."""
-
-    def _beams(self) -> tuple[Beams, float]:
-        return self._grow() if self._kept is None else self._kept
-
-    def _guard_beside(self, beams: Beams) -> Guard:
-        """Return the guard of what is found within these beams."""
-        return taking(self._tracing.guard, nbytes(beams, self._tracing.tree), BEAMS)
-
-    def _least(self) -> Floats:
-        """See `Tracing.least`."""
-        return self._tracing.least_diffracted
-
-    def _collector(self, evaluation: Evaluation, record: Record, guard: Guard) -> Collector:
-        geometry, least = self._tracing.geometry, self._least()
-        heights = np.zeros((0, 0))
-        if len(least) or evaluation.min_power > 0.0:
-            heights = height_sums(geometry, evaluation.tables)
-        sums = new_sums(len(geometry.receivers.xy), geometry.max_reflections)
-        return Collector(sums, record, evaluation.min_power, least, heights, guard)
-
-    def grow(self) -> int:
-        """See `PathClass`."""
-        self._kept = self._beams()
-        return self._n_beams(self._kept[0])
-
-    def sum_paths(self, evaluation: Evaluation, beams: Ints | None = None) -> Sums:
-        """See `PathClass`."""
-        grown, left_out = self._beams()
-        guard = self._guard_beside(grown)
-        collector = self._collector(evaluation, no_record(), guard)
-        sums = collector.sums
-        numbers = np.arange(self._n_beams(grown)) if beams is None else beams
-        while len(numbers):
-            batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
-            check_whole(guard, done > 0, HITS)
-            self._evaluate(batch, evaluation.tables, collector)
-            numbers = numbers[done:]
-        check_whole(guard, True, HITS)
-        sums.left_out[np.unique(self._tracing.targets.number)] += left_out
-        return sums
-
-    def list_paths(self, evaluation: Evaluation) -> Paths:
-        """See `PathClass`; the paths are counted first, then recorded."""
-        return self._paths(*self._recorded(evaluation))
-
-    def keep_paths(self, evaluation: Evaluation) -> KeptRecord:
-        """See `PathClass`."""
-        beams, record = self._recorded(evaluation)
-        receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
-
-        def steps_of(rows: Ints) -> Steps:
-            chosen = record._replace(
-                key=record.key[rows], gain=record.gain[rows], weight=record.weight[rows]
-            )
-            n_max = self._max_interactions(beams)
-            points, steps = np.zeros((1, n_max + 2, 3)), new_steps(len(rows), n_max)
-            self._write_points(beams, chosen, points, steps)
-            check_whole(self._tracing.guard, True, PATHS)
-            return steps
-
-        power = record.weight * np.abs(record.gain) ** 2
-        return KeptRecord(receiver, power, record.weight, steps_of)
-
-    def _recorded(self, evaluation: Evaluation) -> tuple[Beams, Record]:
-        """Return the beams with all their hits, and the paths of these."""
-        grown, _ = self._beams()
-        guard, n_beams = self._guard_beside(grown), self._n_beams(grown)
-        beams, done = self._hit(grown, np.arange(n_beams), ALL_HITS, guard)
-        check_whole(guard, done == n_beams, HITS)
-        record = new_record(0)
-        for _ in range(2):
-            taking(guard, int(record.used[0]) * self._path_bytes(beams), PATHS)
-            record = new_record(int(record.used[0]))
-            collector = self._collector(evaluation, record, guard)
-            self._evaluate(beams, evaluation.tables, collector)
-            check_whole(guard, True, PATHS)
-        return beams, record
-
-    @abstractmethod
-    def _most_walls(self, beams: Beams) -> int:
-        """Most walls that the paths of these beams meet."""
-
-    def _max_interactions(self, beams: Beams) -> int:
-        config, transmissions = self._tracing.config, self._tracing.config.max_transmissions
-        if transmissions is None:
-            transmissions = self._most_walls(beams)
-        return config.max_reflections + config.max_diffractions + transmissions
-
-    def _path_bytes(self, beams: Beams) -> int:
-        """Size of a path with its record, and of all its copies."""
-        n_max = self._max_interactions(beams)
-        return COPIES_OF_PATHS * (24 * (n_max + 2) + STEP_BYTES * n_max + PATH_BYTES + 48)
-
-    def _paths(self, beams: Beams, record: Record) -> Paths:
-        n, n_max = len(record.gain), self._max_interactions(beams)
-        points, steps = np.zeros((n, n_max + 2, 3)), new_steps(n, n_max)
-        self._write_points(beams, record, points, steps)
-        check_whole(self._tracing.guard, True, PATHS)
-        length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
-        receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
-        return Paths(receiver, steps.kind, points, length, record.gain, record.weight, steps)
-
-
-class Reflections(_BeamClass[ReflectionBeams]):
+class Reflections(BeamClass[ReflectionBeams]):
     """Line of sight and every sequence of reflections."""
 
     def _grow(self) -> tuple[ReflectionBeams, float]:
@@ -240,7 +100,7 @@ class Reflections(_BeamClass[ReflectionBeams]):
         reflection_points(t.geometry, beams, leg, record, points, steps, t.guard)
 
 
-class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
+class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
     """Every path that one vertical edge diffracts."""
 
     def __init__(self, tracing: Tracing, edge: edges.VerticalEdge, counts: Floats) -> None:
@@ -262,10 +122,10 @@ class OverVerticalEdge(_BeamClass[VerticalEdgeBeams]):
         to_edge = tree.beam[beams, :2] - (self._edge.x, self._edge.y)
         order, length = tree.link[beams, ORDER].astype(np.int64), np.hypot(*to_edge.T)
         arrivals = Arrivals(order, length, self._power_behind * tree.beam[beams, FRACTION])
-        place = np.array([self._edge.x, self._edge.y] * 2)
+        place = np.array([[self._edge.x, self._edge.y]])
         distances = distances_to_cells(t.scene.view, place)
         kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, distances)
-        guard = taking(t.guard, len(kept) * leg_bytes(tree), LEGS)
+        guard = taking(t.guard, len(kept) * leg_bytes(tree.link[beams[kept]]), LEGS)
         view = t.scene.view
         legs = legs_to_edge(view, tree, beams[kept], weight[kept], self._edge, guard)
         check_whole(guard, True, LEGS)
@@ -323,7 +183,7 @@ def _heights(edge: edges.VerticalEdge, height_m: float) -> tuple[float, float]:
     return low, edge.z_high if edge.z_high < height_m - GRAZING_M else height_m + 1.0
 
 
-class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
+class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
     """Every path that leaves one side of a horizontal edge (side 0 or 1 of its plan edges)."""
 
     def __init__(
@@ -364,7 +224,7 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
             nearest=nearest,
             farthest=farthest,
         )
-        distances = distances_to_cells(t.scene.view, t.scene.view.ends[self._near])
+        distances = distances_to_cells(t.scene.view, t.scene.view.ends[self._near].reshape(2, 2))
         arrivals = self._arrivals(images)
         kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, distances)
         columns: Any = images
@@ -415,10 +275,7 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
         self, beams: HorizontalEdgeBeams, tables: FieldTables, collector: Collector
     ) -> None:
         geometry = self._tracing.geometry
-        work, shadow = (
-            new_edge_workspace(geometry.max_reflections, beams.tree, beams.strips),
-            np.empty(0),
-        )
+        work, shadow = new_edge_workspace(geometry.max_reflections, beams), np.empty(0)
         if collector.min_power > 0.0 or len(collector.least):
             shadow = shadow_of(self._tracing.limits, tables, self._edge.wedge.o_slab)
         sum_horizontal_edge(geometry, tables, beams, shadow, work, collector)
@@ -427,7 +284,7 @@ class OverHorizontalEdge(_BeamClass[HorizontalEdgeBeams]):
         self, beams: HorizontalEdgeBeams, record: Record, points: Floats, steps: Steps
     ) -> None:
         geometry = self._tracing.geometry
-        work = new_edge_workspace(geometry.max_reflections, beams.tree, beams.strips)
+        work = new_edge_workspace(geometry.max_reflections, beams)
         horizontal_edge_points(geometry, beams, work, record, points, steps, self._tracing.guard)
 
 

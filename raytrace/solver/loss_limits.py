@@ -234,12 +234,15 @@ def strong_arrivals(
     return np.flatnonzero(is_strong), float(together[~is_strong].sum())
 
 
-def distances_to_cells(view: PlanView, segment: Floats) -> Floats:
-    """Shortest distances (n_cells,) [m] from a segment x, y, x, y that crosses no edge."""
+def distances_to_cells(view: PlanView, points: Floats) -> Floats:
+    """Shortest distances (n_cells,) [m] from a point, or the segment between two (1 or 2, 2).
+
+    The segment crosses no edge of the plan view.
+    """
     ends, starts = view.ends.reshape(-1, 2, 2), view.cell_edges[:-1]
-    here = segment.reshape(2, 2)
-    found = [_to_segments(point, ends[:, 0], ends[:, 1]) for point in here]
-    found += [_to_segments(ends[:, k], here[0], here[1]) for k in (0, 1)]
+    found = [_to_segments(point, ends[:, 0], ends[:, 1]) for point in points]
+    if len(points) == 2:
+        found += [_to_segments(ends[:, k], points[0], points[1]) for k in (0, 1)]
     return np.minimum.reduceat(np.min(found, axis=0), starts)
 
 
@@ -256,8 +259,10 @@ def limits_from_edge(arrivals: Arrivals, limits: Limits, counts: Floats) -> Limi
     order = limits.max_reflections - int(arrivals.order.min())
     loss = limits.loss._replace(further=counts)
     if loss.is_active and arrivals.sines is not None:
+        rows, ranks = ranked(arrivals.order, arrivals.length, arrivals.fraction)
         columns = [arrivals.order, arrivals.length, arrivals.fraction, arrivals.sines]
-        loss = loss._replace(ways=np.ascontiguousarray(np.column_stack(columns)))
+        ways = np.ascontiguousarray(np.column_stack(columns)[rows])
+        loss = loss._replace(ranks=ranks, ways=ways)
     return limits._replace(max_reflections=order, loss=loss)
 
 
@@ -268,22 +273,36 @@ def limits_from_vertical_edge(
     order = limits.max_reflections - int(legs.order.min())
     loss = limits.loss._replace(further=counts)
     if loss.is_active:
-        n, half = edge.wedge.n, legs.angles[:, 1:3]
+        rows, ranks = ranked(legs.order, legs.length, legs.fraction)
+        n, half = edge.wedge.n, legs.angles[rows, 1:3]
         phi = 2.0 * np.arctan2(half[:, 1], half[:, 0])
         ways = EdgeWays(
             edge.wedge,
             (math.cos(edge.o_face), math.sin(edge.o_face)),
-            legs.order,
-            legs.length,
-            legs.fraction,
+            legs.order[rows],
+            legs.length[rows],
+            legs.fraction[rows],
             np.column_stack([np.cos(phi / (2.0 * n)), np.sin(phi / (2.0 * n))]),
-            legs.angles[:, 5:7] ** 2,
+            legs.angles[rows, 5:7] ** 2,
         )
         most = WEDGE_POWER
         if edge.wedge.is_sheet:
             most = 0.25 * (1.0 + math.sqrt(loss.shadow[edge.wedge.o_slab].max())) ** 2
-        loss = loss._replace(most_behind_edge=most, edge_ways=ways)
+        loss = loss._replace(most_behind_edge=most, edge_ways=ways, ranks=ranks)
     return limits._replace(max_reflections=order, loss=loss)
+
+
+def ranked(order: Ints, length: Floats, fraction: Floats) -> tuple[Ints, Floats]:
+    """Sort ways to an edge by rising order and falling strength; return rows and `losses.ranks`."""
+    strength = fraction / np.maximum(length, 1e-9) ** 2
+    rows = np.lexsort((-strength, order))
+    strength, ends = strength[rows], np.searchsorted(order[rows], order[rows], side="right")
+    sums = np.append(np.cumsum(strength[::-1])[::-1], 0.0)
+    by_order = {n: length[order == n].max() for n in np.unique(order)}
+    longest = np.array([by_order[n] for n in order[rows]])
+    rest = np.maximum(sums[:-1] - sums[ends], strength)
+    columns = strength, rest, ends.astype(np.float64), np.maximum(longest, 1e-9)
+    return rows, np.column_stack(columns)
 
 
 def is_alone(limits: Limits) -> bool:

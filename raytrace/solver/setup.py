@@ -156,6 +156,7 @@ def limits_by_number(scene: Scene, config: TraceConfig) -> Limits:
         roots=np.zeros((order + 1, 2)),
         most_behind_edge=0.0,
         edge_ways=no_edge_ways(),
+        ranks=np.zeros((0, 4)),
         ways=np.zeros((0, 5)),
         further=np.zeros(0),
     )

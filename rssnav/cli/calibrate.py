@@ -14,6 +14,7 @@ from rssnav.cli.console import note, print_json, print_table, say, stage_progres
 from rssnav.cli.failures import EXIT_FAILURE, print_error
 from rssnav.cli.options import (
     Diffractions,
+    DynamicRange,
     Edition,
     Json,
     MaxMemory,
@@ -84,6 +85,7 @@ def calibrate_plan(
     reflections: Reflections = None,
     diffractions: Diffractions = None,
     transmissions: Transmissions = None,
+    dynamic_range: DynamicRange = None,
     report: Report = None,
     max_memory: MaxMemory = None,
     edition: Edition = None,
@@ -103,6 +105,7 @@ def calibrate_plan(
         "reflections": reflections,
         "diffractions": diffractions,
         "transmissions": transmissions,
+        "dynamic_range": dynamic_range,
         "antenna": antenna,
         "frequency": frequency,
     }

@@ -83,15 +83,43 @@ Diffractions = Annotated[
         show_default=_OF_PRESET,
     ),
 ]
+UNLIMITED = "none"
+"""Value of --transmissions for any number of walls."""
+
+_MOST_TRANSMISSIONS = 20
+
+
+def _checked_transmissions(value: str | None) -> str | None:
+    """Check a number of transmissions, or the word for an unlimited one."""
+    if value is None or value == UNLIMITED:
+        return value
+    if not (value.isdecimal() and int(value) <= _MOST_TRANSMISSIONS):
+        raise typer.BadParameter(
+            f"{value!r} is neither an integer from 0 to {_MOST_TRANSMISSIONS} nor {UNLIMITED}."
+        )
+    return value
+
+
 Transmissions = Annotated[
-    int | None,
+    str | None,
     typer.Option(
         "--transmissions",
         metavar="N",
-        min=0,
-        max=20,
-        help="Maximum number of transmissions through walls on a path.",
+        callback=_checked_transmissions,
+        help="Maximum number of transmissions through walls on a path; "
+        "none: no number, paths are limited by loss.",
         show_default=_OF_PRESET,
+    ),
+]
+DynamicRange = Annotated[
+    float | None,
+    typer.Option(
+        "--dynamic-range",
+        metavar="DB",
+        min=1.0,
+        max=1000.0,
+        help="Leave out paths this far below the reflected and transmitted power of a cell.",
+        show_default="25 with --transmissions none, otherwise no limit",
     ),
 ]
 From = Annotated[

@@ -17,6 +17,7 @@ from rssnav.cli.options import (
     PICTURE_SUFFIXES,
     AntennaName,
     Diffractions,
+    DynamicRange,
     Edition,
     Frequency,
     From,
@@ -95,6 +96,7 @@ def show_paths(
     reflections: Reflections = None,
     diffractions: Diffractions = None,
     transmissions: Transmissions = None,
+    dynamic_range: DynamicRange = None,
     max_memory: MaxMemory = None,
     edition: Edition = None,
     style: Style = None,
@@ -113,7 +115,8 @@ def show_paths(
     check_inside(loaded, plan, to, "--to")
     options = {
         "preset": preset, "reflections": reflections, "diffractions": diffractions,
-        "transmissions": transmissions, "power": power, "frequency": frequency,
+        "transmissions": transmissions, "dynamic_range": dynamic_range, "power": power,
+        "frequency": frequency,
         "antenna": antenna, "receive_antenna": receive_antenna,
     }  # fmt: skip
     radio = radio_of(plan, loaded, None if source is None else [source], options)

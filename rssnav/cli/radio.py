@@ -13,8 +13,9 @@ from shapely import Point
 import floorplans
 from floorplans import FloorPlan
 from raytrace import Antenna, TraceConfig, Transmitter
+from rssnav.cli.options import UNLIMITED
 from rssnav.maps import HEIGHT_M
-from rssnav.presets import PRESETS, Preset, default_preset
+from rssnav.presets import BY_LOSS, PRESETS, Preset, default_preset
 from rssnav.transmitters import NoTransmitterError, Sending, antenna_of, choose_transmitters
 
 Position = tuple[float, float, float]
@@ -75,8 +76,14 @@ def radio_of(
 
 def config_of(preset: Preset, options: dict[str, Any]) -> TraceConfig:
     """Return the limits of a preset with those options that are given."""
-    given = {field: options.get(option) for field, option in _LIMITS.items()}
-    return replace(preset.config, **{k: value for k, value in given.items() if value is not None})
+    found = {field: options.get(option) for field, option in _LIMITS.items()}
+    given = {field: value for field, value in found.items() if value is not None}
+    transmissions = given.get("max_transmissions")
+    if transmissions == UNLIMITED:
+        given = {**BY_LOSS, **given, "max_transmissions": None}
+    elif transmissions is not None:
+        given["max_transmissions"] = int(transmissions)
+    return replace(preset.config, **given)
 
 
 _LIMITS = {
@@ -84,6 +91,7 @@ _LIMITS = {
     "max_diffractions": "diffractions",
     "max_transmissions": "transmissions",
     "min_power_dbm": "min_power",
+    "dynamic_range_db": "dynamic_range",
     "max_paths": "max_paths",
 }
 """Options of the limits of a trace."""

@@ -14,9 +14,11 @@ from raytrace import RadioMap, Transmitter, TransmitterMaps
 from rssnav.cli.console import note, print_json, print_pairs, say, stage_progress
 from rssnav.cli.options import (
     PICTURE_SUFFIXES,
+    UNLIMITED,
     AntennaName,
     CellSize,
     Diffractions,
+    DynamicRange,
     Edition,
     Force,
     Frequency,
@@ -78,6 +80,7 @@ def map_plan(
     diffractions: Diffractions = None,
     transmissions: Transmissions = None,
     min_power: MinPower = None,
+    dynamic_range: DynamicRange = None,
     max_paths: MaxPaths = None,
     max_memory: MaxMemory = None,
     edition: Edition = None,
@@ -101,6 +104,7 @@ def map_plan(
     options = {
         "preset": preset, "reflections": reflections, "diffractions": diffractions,
         "transmissions": transmissions, "min_power": min_power, "max_paths": max_paths,
+        "dynamic_range": dynamic_range,
         "power": power, "frequency": frequency, "antenna": antenna,
         "receive_antenna": receive_antenna,
     }  # fmt: skip
@@ -152,11 +156,12 @@ def _note_dark_cells(plan: FloorPlan, radio_map: RadioMap) -> None:
     if not dark.any():
         return
     transmissions = radio_map.config.max_transmissions
-    remedy = f"more than --transmissions {transmissions}"
-    if transmissions == 0:
-        remedy = f"--preset building, or {remedy}"
-    elif transmissions is None:
+    if transmissions is None:
         remedy = "a lower power limit (--min-power)"
+    else:
+        remedy = f"--transmissions {UNLIMITED}, which lets paths through any number of walls"
+        if transmissions == 0:
+            remedy = f"--preset building, or {remedy}"
     note(f"no path reaches {dark.sum()} cells inside the building: try {remedy}")
 
 

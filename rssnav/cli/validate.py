@@ -8,6 +8,7 @@ import floorplans
 from rssnav.cli.console import print_json, print_pairs, print_table, say, stage_progress
 from rssnav.cli.options import (
     Diffractions,
+    DynamicRange,
     Edition,
     Json,
     MaxMemory,
@@ -65,6 +66,7 @@ def validate_plan(
     reflections: Reflections = None,
     diffractions: Diffractions = None,
     transmissions: Transmissions = None,
+    dynamic_range: DynamicRange = None,
     report: Report = None,
     max_memory: MaxMemory = None,
     edition: Edition = None,
@@ -84,6 +86,7 @@ def validate_plan(
         "reflections": reflections,
         "diffractions": diffractions,
         "transmissions": transmissions,
+        "dynamic_range": dynamic_range,
         "antenna": antenna,
         "frequency": frequency,
     }

@@ -126,11 +126,25 @@ def test_presets_follow_the_plan_and_single_options_override_them(tmp_path) -> N
     assert RadioMap.load(target).transmitter.position == floorplans.loads(ROOM).source
 
 
+def test_transmissions_may_be_limited_by_loss(tmp_path) -> None:
+    plan, target = room_file(tmp_path), tmp_path / "map.h5"
+    done("map", plan, "-o", target, *QUICK, "--transmissions", "none")
+    by_loss = TraceConfig(1, 0, None, -120.0, dynamic_range_db=25.0)
+    assert RadioMap.load(target).config == by_loss
+    limits = ("--min-power", "-90", "--dynamic-range", "12")
+    done("map", plan, "-o", target, *QUICK, "--transmissions", "none", *limits, "--force")
+    by_loss = TraceConfig(1, 0, None, -90.0, dynamic_range_db=12.0)
+    assert RadioMap.load(target).config == by_loss
+    text = run("map", plan, "-o", target, "--transmissions", "many").stderr
+    assert "'many' is neither an integer from 0 to 20 nor none" in " ".join(text.split())
+
+
 def test_dark_cells_behind_walls_say_what_to_do(tmp_path) -> None:
     plan = room_file(tmp_path, ROOM.replace("openings = [{", "# openings = [{"))
     target = tmp_path / "map.h5"
     dark = run("map", plan, "-o", target, "--preset", "paper", *QUICK)
     assert "no path reaches 12 cells inside the building: try --preset building" in dark.stderr
+    assert "--transmissions none" in dark.stderr
     assert np.isneginf(RadioMap.load(target).rss_dbm).sum() == 12
     lit = run("map", plan, "-o", target, *QUICK)
     assert "no path reaches" not in lit.stderr
