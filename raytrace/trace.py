@@ -33,7 +33,7 @@ from raytrace.solver.path_class import Evaluation
 from raytrace.solver.setup import Tracing
 from raytrace.solver.workers import Stop, Workers
 
-TRACER_VERSION = 5
+TRACER_VERSION = 6
 """Grows whenever the same scene would give another map."""
 
 
