@@ -28,8 +28,8 @@ _MATERIAL_WORDS: Lists[str] = (
         "blockw", "adobe",
     )),
     ("plasterboard", (
-        "plaster", "gyps", "gips", "dryw", "placo", "putz", "cartong", "yeso", "gkb", "trockenb",
-        "*gips", "*putz ",
+        "plaster", "gyps", "gips", "dryw", "placo", "putz", "cartong", "yeso", "trockenb",
+        "gkb", "gk ", "gkf ", "rigips", "*gips", "*putz ",
     )),
     ("glass", ("glas", "glaz", "verre", "vidri", "vetro", "curtain", "szkl", "*glas ", "vitr")),
     ("wood", (

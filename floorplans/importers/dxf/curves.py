@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, cos, degrees, dist, floor, isfinite, radians
 from typing import TYPE_CHECKING, Any
+
+import shapely
+from shapely.geometry import LinearRing, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from floorplans.walls import Point
 
@@ -22,6 +26,8 @@ _MIN_RATIO = 0.7
 """Ellipses down to this ratio of axes can be the swing of a door in a scaled block."""
 _SAME = 1e-6
 """A chain whose ends are nearer than this fraction of its length is closed."""
+_EXTERNAL = 1
+"""Flag of an outer boundary of a hatch."""
 _FAR = 1e12
 """Larger coordinates are invalid in any unit."""
 
@@ -52,12 +58,18 @@ class Curve:
         Whether it is filled, as by a hatch or a solid.
     swing : Swing or None
         For an arc that may be a door's.
+    holes : tuple of tuple of (float, float)
+        Rings in a filled chain that are not filled.
+    width : float
+        Of a polyline that is drawn wide, in the drawing's unit; otherwise 0.
     """
 
     points: tuple[Point, ...]
     closed: bool = False
     filled: bool = False
     swing: Swing | None = None
+    holes: tuple[tuple[Point, ...], ...] = ()
+    width: float = 0.0
 
 
 def curves_of(entity: DXFGraphic, tolerance: float) -> list[Curve]:
@@ -86,7 +98,24 @@ def moved_curve(curve: Curve, matrix: Matrix44) -> Curve:
     if swing is not None:
         hinge, start, end = moved((swing.hinge, *swing.ends))
         swing = Swing(hinge, (start, end))
-    return replace(curve, points=moved(curve.points), swing=swing)
+    holes = tuple(moved(hole) for hole in curve.holes)
+    return replace(curve, points=moved(curve.points), swing=swing, holes=holes)
+
+
+def scaled_curve(curve: Curve, factor: float) -> Curve:
+    """Scale a curve about (0, 0), also its width."""
+
+    def scaled(points: Iterable[Point]) -> tuple[Point, ...]:
+        return tuple((x * factor, y * factor) for x, y in points)
+
+    swing = curve.swing
+    if swing is not None:
+        hinge, start, end = scaled((swing.hinge, *swing.ends))
+        swing = Swing(hinge, (start, end))
+    holes = tuple(scaled(hole) for hole in curve.holes)
+    return Curve(
+        scaled(curve.points), curve.closed, curve.filled, swing, holes, curve.width * factor
+    )
 
 
 def chord_step_deg(radius: float, tolerance: float) -> float:
@@ -100,7 +129,8 @@ def chord_step_deg(radius: float, tolerance: float) -> float:
 def is_finite(curve: Curve) -> bool:
     """Whether all points of a curve, also those of its swing, are where a drawing can be."""
     swing = curve.swing
-    points = curve.points if swing is None else (*curve.points, swing.hinge, *swing.ends)
+    points = [*curve.points, *(point for hole in curve.holes for point in hole)]
+    points += [] if swing is None else [swing.hinge, *swing.ends]
     return all(isfinite(x) and isfinite(y) and max(abs(x), abs(y)) < _FAR for x, y in points)
 
 
@@ -168,7 +198,18 @@ def _polyline(polyline: Any, tolerance: float) -> Iterator[Curve]:
     if len(points) > 1:
         length = sum(dist(a, b) for a, b in pairwise(points))
         closed = dist(points[0], points[-1]) <= _SAME * length
-        yield Curve(tuple(points[:-1] if closed else points), closed=closed)
+        yield Curve(tuple(points[:-1] if closed else points), closed=closed, width=_width(polyline))
+
+
+def _width(polyline: Any) -> float:
+    """Width of a polyline that has one all along, otherwise 0."""
+    if polyline.dxftype() == "POLYLINE":
+        widths = {float(polyline.dxf.get(f"default_{end}_width", 0.0)) for end in ("start", "end")}
+    else:
+        widths = {float(width) for ends in polyline.get_points("se") for width in ends}
+        if polyline.dxf.get("const_width", 0.0):
+            widths = {float(polyline.dxf.const_width)}
+    return widths.pop() if len(widths) == 1 else 0.0
 
 
 def _mline(mline: Any, tolerance: float) -> Iterator[Curve]:
@@ -177,11 +218,50 @@ def _mline(mline: Any, tolerance: float) -> Iterator[Curve]:
 
 
 def _hatch(hatch: Any, tolerance: float) -> Iterator[Curve]:
+    """Read a hatch as what it fills: its boundaries, without the holes in them.
+
+    A boundary within another is a hole, unless it is marked as an outer one beside marked holes.
+    """
     from ezdxf.path import from_hatch
 
-    for path in from_hatch(hatch):
-        points = tuple(_flat(vertex) for vertex in path.flattening(tolerance))
-        yield Curve(points, closed=True, filled=True)
+    paths = [[_flat(v) for v in path.flattening(tolerance)] for path in from_hatch(hatch)]
+    marks = [bool(path.path_type_flags & _EXTERNAL) for path in hatch.paths]
+    is_marked = len(marks) == len(paths) and not all(marks)
+    outer = marks if is_marked else [False] * len(paths)
+    rings = [(points, mark) for points, mark in zip(paths, outer, strict=True) if len(points) > 2]
+    for part in _filled(rings):
+        if isinstance(part, Polygon):
+            ring, *holes = (_ring(ring) for ring in (part.exterior, *part.interiors))
+            yield Curve(ring, closed=True, filled=True, holes=tuple(holes))
+
+
+def _filled(rings: Sequence[tuple[list[Point], bool]]) -> Iterator[BaseGeometry]:
+    """Yield the area in each ring that is no hole of another, without its holes.
+
+    Rings that are marked as outer ones are no holes.
+    """
+    found: list[BaseGeometry] = []
+    depths: list[int] = []
+    areas = [(_area(ring), is_outer) for ring, is_outer in rings]
+    for area, is_outer in sorted(areas, key=lambda item: -item[0].area):
+        around = [depth for other, depth in zip(found, depths, strict=True) if other.covers(area)]
+        found.append(area)
+        depths.append(0 if is_outer or not around else max(around) + 1)
+    for area, depth in zip(found, depths, strict=True):
+        if depth % 2 == 0:
+            below = [
+                other for other, k in zip(found, depths, strict=True)
+                if k == depth + 1 and area.covers(other)
+            ]  # fmt: skip
+            yield from shapely.get_parts(area.difference(shapely.union_all(below)))
+
+
+def _area(ring: list[Point]) -> BaseGeometry:
+    return shapely.make_valid(Polygon(ring))
+
+
+def _ring(ring: LinearRing) -> tuple[Point, ...]:
+    return tuple((float(x), float(y)) for x, y in ring.coords[:-1])
 
 
 def _solid(solid: Any, _: float) -> Iterator[Curve]:

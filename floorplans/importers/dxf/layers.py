@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from shapely.geometry import LineString, MultiLineString
+from shapely.geometry import LinearRing, LineString, MultiLineString
 
 from floorplans.errors import PlanError
 from floorplans.importers.draft import LayerUse
@@ -59,6 +59,7 @@ class Layers:
             LineString([*curve.points, *curve.points[: curve.closed]])
             for curve in (*curves, *symbols)
         ]
+        lines += [LinearRing(hole) for curve in curves for hole in curve.holes]
         return DrawnLayer(use.name, use.became, is_used, MultiLineString(lines))
 
     def _is_unknown(self, name: str) -> bool:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry import LinearRing, LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
@@ -25,12 +25,12 @@ from floorplans.importers.centrelines.align import aligned_to_main_directions, a
 from floorplans.importers.centrelines.areas import MAX_THICKNESS_M, walls_of_area
 from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
-from floorplans.importers.centrelines.parallel_lines import strips_of_lines
+from floorplans.importers.centrelines.parallel_lines import MIN_THICKNESS_M, strips_of_lines
 from floorplans.importers.centrelines.split_by_material import by_material, without_openings
 from floorplans.importers.centrelines.spurious import without_spurious_walls
 from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
-from floorplans.importers.dxf.curves import Curve, Swing
+from floorplans.importers.dxf.curves import Curve, Swing, scaled_curve
 from floorplans.importers.dxf.drawing import Content, Symbol, load_document, read_content
 from floorplans.importers.dxf.layers import Layers, layers_of, missing_blocks
 from floorplans.importers.dxf.openings import (
@@ -148,12 +148,7 @@ def _size(content: Content, layers: Layers) -> tuple[float, float]:
 
 def _in_metres(content: Content, unit_m: float) -> Content:
     def scaled(curve: Curve) -> Curve:
-        points = tuple((x * unit_m, y * unit_m) for x, y in curve.points)
-        swing = curve.swing
-        if swing is not None:
-            hinge, *ends = ((x * unit_m, y * unit_m) for x, y in (swing.hinge, *swing.ends))
-            swing = Swing(hinge, (ends[0], ends[1]))
-        return replace(curve, points=points, swing=swing)
+        return scaled_curve(curve, unit_m)
 
     metric = Content(n_objects=content.n_objects, hidden=content.hidden)
     for layer, curves in content.curves.items():
@@ -278,12 +273,30 @@ def _thin_bodies(chains: Sequence[Curve]) -> tuple[list[Polygon], NDArray[np.flo
     segments: list[NDArray[np.float64]] = []
     for chain in chains:
         points = np.array([*chain.points, *chain.points[: chain.closed]])
-        body = shapely.make_valid(Polygon(points)) if chain.closed and len(points) > 3 else None
-        if body is not None and body.area > 0 and body.buffer(-MAX_THICKNESS_M / 2).is_empty:
+        body = _body(chain, points)
+        if body is not None and _is_thin(body):
             area += [part for part in shapely.get_parts(body) if isinstance(part, Polygon)]
         elif not chain.filled:
             segments.append(np.stack([points[:-1], points[1:]], axis=1))
     return area, np.concatenate(segments) if segments else np.empty((0, 2, 2))
+
+
+def _body(chain: Curve, points: NDArray[np.float64]) -> BaseGeometry | None:
+    """Area that a chain encloses, or covers as a wide line; None if it does neither."""
+    if chain.width >= MIN_THICKNESS_M:
+        wide = LineString(points) if not chain.closed else LinearRing(chain.points)
+        return wide.buffer(chain.width / 2, cap_style="flat", join_style="mitre")
+    if not chain.closed or len(points) <= 3:
+        return None
+    whole = shapely.make_valid(Polygon(points))
+    if not chain.holes or _is_thin(whole):
+        return whole  # holes in a wall are shafts and niches, which a plan cannot show
+    return shapely.make_valid(Polygon(points, chain.holes))
+
+
+def _is_thin(body: BaseGeometry) -> bool:
+    """Whether an area is thin enough for a wall, and no room or floor."""
+    return body.area > 0 and body.buffer(-MAX_THICKNESS_M / 2).is_empty
 
 
 def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> list[RawOpening]:

@@ -175,6 +175,34 @@ def test_curved_glazing_beside_curved_walls_loses_nothing(tmp_path: Path):
     assert result.plan.outline.area == pytest.approx(pi * 5.2**2, rel=0.03)
 
 
+def test_a_hatch_leaves_its_holes_free(tmp_path: Path):
+    doc = draw.new()
+    hatch = doc.modelspace().add_hatch(dxfattribs={"layer": "WALL"})
+    for ring in ((0, 0, 15, 10), (0.3, 0.3, 7, 9.7), (7.2, 0.3, 14.7, 9.7)):
+        points = [(1000 * x, 1000 * y) for x, y in draw.rectangle(*ring)]
+        hatch.paths.add_polyline_path(points, is_closed=True)
+    plan = imported(doc, tmp_path).plan
+    assert plan.outline.area == pytest.approx(14.7 * 9.7, rel=1e-3)
+    assert sorted(round(w.thickness_m, 3) for w in plan.walls) == [0.2, 0.3, 0.3, 0.3, 0.3]
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.5])
+def test_a_polyline_with_a_width_is_a_wall_as_thick(tmp_path: Path, scale: float):
+    doc = draw.new()
+    block = doc.blocks.new("STOREY")
+    for points, closed, width in (
+        ([(0, 0), (12, 0), (12, 8), (0, 8)], True, 300),
+        ([(5, 0), (5, 8)], False, 120),
+    ):
+        corners = [(1000 * x / scale, 1000 * y / scale) for x, y in points]
+        outline = {"layer": "WALL", "const_width": width / scale}
+        block.add_lwpolyline(corners, close=closed, dxfattribs=outline)
+    doc.modelspace().add_blockref("STOREY", (0, 0), dxfattribs={"xscale": scale, "yscale": scale})
+    plan = imported(doc, tmp_path).plan
+    assert plan.outline.area == pytest.approx(12 * 8, rel=1e-3)
+    assert sorted(round(w.thickness_m, 3) for w in plan.walls) == [0.12, 0.3, 0.3, 0.3, 0.3]
+
+
 def test_a_drawing_whose_walls_are_in_another_file_is_not_its_frame(tmp_path: Path):
     doc = draw.new()
     doc.add_xref_def("storey.dwg", "storey")
