@@ -36,14 +36,16 @@ def atomic_write(path: str | Path) -> Generator[Path]:
     Raises
     ------
     OSError
-        Where the file cannot be written; names `path` where the disk is full.
+        Where the file cannot be written, or is a device or a pipe; names `path`.
     """
     path = Path(os.path.realpath(path))
-    with _named_if_full(path):
+    with _named(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         _remove_abandoned(path)
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        if path.exists() and not path.is_file():  # a renamed file would take a device's place
+            raise FileExistsError(errno.EEXIST, "is not a regular file", str(path))
         with _temporary(path) as temporary:
             yield temporary
             _flush(temporary)
@@ -64,19 +66,19 @@ def atomic_write_all(contents: Mapping[Path, bytes]) -> None:
 
 
 @contextmanager
-def _named_if_full(path: Path) -> Generator[None]:
-    """Name the file in the system's error where there is no room for it."""
+def _named(path: Path) -> Generator[None]:
+    """Name the file in the system's errors where they name none or the temporary one."""
     try:
         yield
     except OSError as error:
-        named = error.filename is not None and not _is_temporary(error.filename, path)
-        if error.errno not in _NO_SPACE or named:
+        unnamed = error.filename is None and error.errno in _NO_SPACE
+        if error.errno is None or not (unnamed or _is_temporary(error.filename, path)):
             raise
         raise OSError(error.errno, os.strerror(error.errno), str(path)) from error
 
 
-def _is_temporary(name: str, path: Path) -> bool:
-    return Path(name).name.startswith(_prefix(path))
+def _is_temporary(name: object, path: Path) -> bool:
+    return isinstance(name, str) and Path(name).name.startswith(_prefix(path))
 
 
 def _prefix(path: Path) -> str:

@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
+from raytrace.errors import MemoryLimitError
+
 UNKNOWN_BYTES = 8 << 30
 """Assumed to be free where the system does not report it."""
 
@@ -29,6 +31,13 @@ def memory_limit(max_memory_bytes: int | None = None) -> int:
     if max_memory_bytes < 1:
         raise ValueError(f"max_memory_bytes = {max_memory_bytes!r}: expected at least 1")
     return int(max_memory_bytes)
+
+
+def check_size(what: str, needed_bytes: int) -> None:
+    """Raise `MemoryLimitError` for arrays that take more than half of the free memory."""
+    left_bytes = memory_limit()
+    if needed_bytes > left_bytes:
+        raise MemoryLimitError(what, needed_bytes, left_bytes)
 
 
 def free_bytes() -> int:

@@ -72,14 +72,20 @@ def generate(
     """
     if kind not in KINDS:
         raise ValueError(f"kind = {kind!r}: expected one of {', '.join(KINDS)}")
-    if isinstance(seed, bool) or not 0 <= seed < 2**63 or seed % 1:
+    if not _is_integer(seed, 0, 2**63 - 1):
         raise ValueError(f"seed = {seed!r}: expected an integer from 0 to 2^63 - 1")
     if area_m2 is not None and not LEAST_M2 <= area_m2 <= LARGEST_M2:
         raise ValueError(f"area_m2 = {area_m2}: expected {LEAST_M2:g} to {LARGEST_M2:g} m^2")
-    if not 0 <= n_transmitters <= MAX_TRANSMITTERS:
-        raise ValueError(f"n_transmitters = {n_transmitters}: expected 0 to {MAX_TRANSMITTERS}")
+    if not _is_integer(n_transmitters, 0, MAX_TRANSMITTERS):
+        raise ValueError(
+            f"n_transmitters = {n_transmitters}: expected an integer from 0 to {MAX_TRANSMITTERS}"
+        )
     rng = np.random.Generator(np.random.PCG64([KINDS.index(kind), int(seed)]))
-    return _generated(kind, int(seed), rng, area_m2, furniture, n_transmitters)
+    return _generated(kind, int(seed), rng, area_m2, furniture, int(n_transmitters))
+
+
+def _is_integer(value: float, least: int, most: int) -> bool:
+    return not isinstance(value, bool) and least <= value <= most and value % 1 == 0
 
 
 def _generated(

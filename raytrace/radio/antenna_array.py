@@ -8,10 +8,18 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from raytrace.arrays import Complexes, Floats
+from raytrace.radio.antenna_checks import (
+    MAX_OFFSET,
+    MAX_WEIGHT,
+    Vector,
+    check_elements,
+    unit_vector,
+)
 from raytrace.radio.antennas import Amplitudes, Antenna, Isotropic
 from raytrace.radio.rotated import unit_vectors
 
-Vector = tuple[float, float, float]
+BLOCK = 1 << 20
+"""Most phases of elements that `AntennaArray.amplitudes` holds at once."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +35,7 @@ class AntennaArray:
     element
         Each antenna.
     offsets
-        (x, y, z) of each element from the array's position [wavelengths].
+        (x, y, z) of each element from the array's position [wavelengths]; 1 to 4096 elements.
     weights
         One for each element; by default all equal, with squares that sum to 1.
     """
@@ -38,6 +46,7 @@ class AntennaArray:
 
     def __post_init__(self) -> None:
         """Check the numbers; raise ValueError where they do not belong together."""
+        check_elements("number of offsets", max(len(self.offsets), 1))
         offsets = np.asarray(self.offsets, dtype=np.float64)
         if offsets.ndim != 2 or offsets.shape[1] != 3 or not len(offsets):
             raise ValueError(f"offsets of shape {offsets.shape}: expected (n, 3), n at least 1")
@@ -46,8 +55,10 @@ class AntennaArray:
             weights = np.full(len(offsets), 1.0 / np.sqrt(len(offsets)), dtype=np.complex128)
         if weights.shape != (len(offsets),):
             raise ValueError(f"weights of shape {weights.shape}: expected ({len(offsets)},)")
-        if not (np.isfinite(offsets).all() and np.isfinite(weights).all()):
-            raise ValueError("offsets and weights: expected finite numbers")
+        if not (np.abs(offsets) <= MAX_OFFSET).all():
+            raise ValueError(f"offsets: expected numbers up to {MAX_OFFSET:g} wavelengths")
+        if not (np.abs(weights) <= MAX_WEIGHT).all():
+            raise ValueError(f"weights: expected magnitudes up to {MAX_WEIGHT:g}")
         object.__setattr__(self, "offsets", tuple(map(tuple, offsets.tolist())))
         object.__setattr__(self, "weights", tuple(weights.tolist()))
 
@@ -76,13 +87,12 @@ class AntennaArray:
         Raises
         ------
         ValueError
-            For fewer than one element, or an axis that is no direction.
+            For a number of elements out of range, or an axis that is no direction.
         """
-        length = float(np.linalg.norm(axis))
-        if not (np.isfinite(length) and length > 0.0):
-            raise ValueError(f"axis = {axis}: expected three finite numbers, not all 0")
-        step = spacing * np.asarray(axis) / length
-        return cls(element or Isotropic(), _vectors(_centred(n, "n")[:, None] * step))
+        check_elements("n", n)
+        _check_spacing(spacing)
+        step = spacing * np.array(unit_vector("axis", axis))
+        return cls(element or Isotropic(), _vectors(_centred(n)[:, None] * step))
 
     @classmethod
     def planar(
@@ -102,9 +112,12 @@ class AntennaArray:
         Raises
         ------
         ValueError
-            For fewer than one row or column.
+            For a number of rows, columns or elements out of range.
         """
-        z, y = np.meshgrid(_centred(n_z, "n_z"), _centred(n_y, "n_y"), indexing="ij")
+        for name, n in (("n_y", n_y), ("n_z", n_z), ("n_y * n_z", n_y * n_z)):
+            check_elements(name, n)
+        _check_spacing(spacing)
+        z, y = np.meshgrid(_centred(n_z), _centred(n_y), indexing="ij")
         offsets = spacing * np.stack([np.zeros(z.size), y.ravel(), z.ravel()], axis=-1)
         return cls(element or Isotropic(), _vectors(offsets))
 
@@ -120,10 +133,7 @@ class AntennaArray:
         ValueError
             For a direction that is none.
         """
-        length = float(np.linalg.norm(direction))
-        if not (np.isfinite(length) and length > 0.0):
-            raise ValueError(f"direction = {direction}: expected finite numbers, not all 0")
-        phases = np.asarray(self.offsets) @ (np.asarray(direction, dtype=np.float64) / length)
+        phases = np.asarray(self.offsets) @ np.array(unit_vector("direction", direction))
         weights = np.exp(-2j * np.pi * phases) / np.sqrt(len(self))
         return replace(self, weights=tuple(weights.tolist()))
 
@@ -145,7 +155,10 @@ class AntennaArray:
     def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
         """Field amplitudes towards directions; see `raytrace.antennas.Antenna.amplitudes`."""
         towards = unit_vectors(np.asarray(sine), np.asarray(azimuth))[2]
-        factor = self.response(towards) @ np.asarray(self.weights)
+        rows, weights = towards.reshape(-1, 3), np.asarray(self.weights)
+        blocks = np.array_split(rows, 1 + len(rows) * len(weights) // BLOCK)
+        factor = np.concatenate([self.response(block) @ weights for block in blocks])
+        factor = factor.reshape(towards.shape[:-1])
         v, h = self.element.amplitudes(sine, azimuth)
         return Amplitudes(factor * v, factor * h)
 
@@ -154,10 +167,13 @@ class AntennaArray:
         return f"array of {len(self)} elements, each: {self.element.describe()}"
 
 
-def _centred(n: int, name: str) -> Floats:
+def _check_spacing(spacing: float) -> None:
+    if not abs(spacing) <= MAX_OFFSET:
+        raise ValueError(f"spacing = {spacing}: expected up to {MAX_OFFSET:g} wavelengths")
+
+
+def _centred(n: int) -> Floats:
     """Return n numbers, 1 apart, around 0."""
-    if n < 1:
-        raise ValueError(f"{name} = {n}: expected at least 1")
     return np.arange(n, dtype=np.float64) - 0.5 * (n - 1)
 
 

@@ -13,13 +13,13 @@ v(-s) E_tau - h(-s) E_psi (docs/theory.md, eq. 32).
 """
 
 from dataclasses import dataclass
-from math import isfinite
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from raytrace.arrays import Complexes, Floats
 from raytrace.errors import SceneError
+from raytrace.radio.antenna_checks import check_gain_db, unit_vector
 
 DIPOLE_PEAK_GAIN_DBI = 2.150_88
 """Peak gain of a lossless half-wave dipole over an isotropic radiator [dB] (Balanis, 4-93)."""
@@ -72,14 +72,9 @@ class HalfWaveDipole:
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
-        """Check the axis; raise ValueError for one that is no direction."""
-        length = float(np.linalg.norm(self.axis))
-        if len(self.axis) != 3 or not (isfinite(length) and length > 0.0):
-            raise ValueError(f"axis = {self.axis}: expected three finite numbers, not all 0")
-        if abs(length - 1.0) < 1e-12:
-            length = 1.0
-        x, y, z = (float(part) / length for part in self.axis)
-        object.__setattr__(self, "axis", (x, y, z))
+        """Check gain and axis; raise ValueError for a wrong one."""
+        check_gain_db("peak_gain_db", self.peak_gain_db)
+        object.__setattr__(self, "axis", unit_vector("axis", self.axis))
 
     def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
         """Field amplitudes towards directions; see `Antenna.amplitudes`."""
@@ -116,6 +111,10 @@ class Isotropic:
     """
 
     gain_db: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the gain; raise ValueError for one out of range."""
+        check_gain_db("gain_db", self.gain_db)
 
     def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
         """Field amplitudes towards directions; see `Antenna.amplitudes`."""

@@ -11,12 +11,15 @@ from math import isfinite, pi, sqrt
 import numpy as np
 
 from raytrace.arrays import Floats
+from raytrace.radio.antenna_checks import check_gain_db
 from raytrace.radio.antennas import DIPOLE_PEAK_GAIN_DBI, Amplitudes, HalfWaveDipole
 from raytrace.radio.rotated import components, unit_vectors
 
 GROUND_PLANE_GAIN_DB = 10.0 * np.log10(2.0)
 """Gain of radiating into one half space over both [dB]."""
 
+LEAST_BEAMWIDTH_DEG = 0.01
+"""Smallest width of a sector's beam [deg]."""
 N_NORMALISATION = 181
 """Elevations and azimuths of the front half space over which a patch's gain is averaged."""
 
@@ -34,6 +37,10 @@ class Monopole:
     """
 
     peak_gain_db: float = DIPOLE_PEAK_GAIN_DBI + GROUND_PLANE_GAIN_DB
+
+    def __post_init__(self) -> None:
+        """Check the gain; raise ValueError for one out of range."""
+        check_gain_db("peak_gain_db", self.peak_gain_db)
 
     def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
         """Field amplitudes towards directions; see `raytrace.antennas.Antenna.amplitudes`."""
@@ -133,13 +140,15 @@ class Sector:
 
     def __post_init__(self) -> None:
         """Check the numbers; raise ValueError for one out of range."""
-        if not 0.0 < self.beamwidth_deg <= 360.0:
-            raise ValueError(f"beamwidth_deg = {self.beamwidth_deg}: expected 0 to 360, not 0")
+        check_gain_db("peak_gain_db", self.peak_gain_db)
+        if not LEAST_BEAMWIDTH_DEG <= self.beamwidth_deg <= 360.0:
+            raise ValueError(
+                f"beamwidth_deg = {self.beamwidth_deg}: expected {LEAST_BEAMWIDTH_DEG:g} to 360"
+            )
         if not 0.0 <= self.front_to_back_db < float("inf"):
             raise ValueError(f"front_to_back_db = {self.front_to_back_db}: expected at least 0")
-        for name in ("peak_gain_db", "slant_deg"):
-            if not isfinite(getattr(self, name)):
-                raise ValueError(f"{name} = {getattr(self, name)}: expected a finite number")
+        if not isfinite(self.slant_deg):
+            raise ValueError(f"slant_deg = {self.slant_deg}: expected a finite number")
 
     def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
         """Field amplitudes towards directions; see `raytrace.antennas.Antenna.amplitudes`."""

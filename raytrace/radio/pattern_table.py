@@ -11,12 +11,15 @@ from scipy.interpolate import RegularGridInterpolator
 
 from raytrace.arrays import Complexes, Floats, Ints
 from raytrace.errors import AntennaError
+from raytrace.radio.antenna_checks import MAX_WEIGHT
 from raytrace.radio.antennas import Amplitudes, Antenna
 
 ANGLE_KEYS = ("theta_deg", "phi_deg")
 GAIN_KEYS = ("gain_dbi", "gain_theta_dbi", "gain_phi_dbi")
 PHASE_KEYS = ("phase_theta_deg", "phase_phi_deg")
 TOLERANCE_DEG = 1e-6
+LEAST_STEP_DEG = 0.1
+"""Smallest step of a table that is made of another antenna [deg]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,9 +63,10 @@ class PatternTable:
                     f"rising values from 0 to {last:g}"
                 )
         for key, values in (("e_theta", self.e_theta), ("e_phi", self.e_phi)):
-            if values.shape != shape or not np.isfinite(values).all():
+            if values.shape != shape or not (np.abs(values) <= MAX_WEIGHT).all():
                 raise AntennaError(
-                    f"{self.name}: {key} of shape {values.shape}: expected finite numbers {shape}"
+                    f"{self.name}: {key} of shape {values.shape}: expected finite numbers {shape}, "
+                    f"up to {MAX_WEIGHT:g}"
                 )
 
     def __eq__(self, other: object) -> bool:
@@ -81,13 +85,16 @@ class PatternTable:
         cls, theta_deg: ArrayLike, phi_deg: ArrayLike, gain_dbi: ArrayLike, name: str = "gain table"
     ) -> "PatternTable":
         """Make a vertically polarised antenna without phase from a gain [dBi] (n_theta, n_phi)."""
-        amplitude = np.asarray(10.0 ** (np.asarray(gain_dbi) / 20.0), dtype=np.complex128)
+        with np.errstate(over="ignore"):  # infinite ones are refused below
+            amplitude = np.asarray(10.0 ** (np.asarray(gain_dbi) / 20.0), dtype=np.complex128)
         theta, phi = (np.asarray(angle, dtype=np.float64) for angle in (theta_deg, phi_deg))
         return cls(theta, phi, -amplitude, np.zeros_like(amplitude), name)
 
     @classmethod
     def of(cls, antenna: Antenna, step_deg: float = 1.0) -> "PatternTable":
-        """Tabulate any antenna; a step [deg] must divide 180 deg."""
+        """Tabulate any antenna; a step [deg] of 0.1 or more that divides 180 deg."""
+        if not LEAST_STEP_DEG <= step_deg <= 90.0:
+            raise AntennaError(f"step_deg = {step_deg}: expected {LEAST_STEP_DEG:g} to 90 deg")
         theta = np.linspace(0.0, 180.0, round(180.0 / step_deg) + 1)
         phi = np.linspace(0.0, 360.0, round(360.0 / step_deg) + 1)
         sine = np.sin(np.radians(90.0 - theta))
@@ -145,9 +152,10 @@ class PatternTable:
 
 def _field(grids: dict[str, Floats], part: str) -> Complexes:
     """Complex amplitudes of one component, from its gain [dBi] and its phase [deg] if given."""
-    amplitude = 10.0 ** (grids[f"gain_{part}_dbi"] / 20.0)
     phase = np.radians(grids.get(f"phase_{part}_deg", np.zeros(1)))
-    return np.asarray(amplitude * np.exp(1j * phase), dtype=np.complex128)
+    with np.errstate(over="ignore", invalid="ignore"):  # infinite ones are refused afterwards
+        amplitude = 10.0 ** (grids[f"gain_{part}_dbi"] / 20.0)
+        return np.asarray(amplitude * np.exp(1j * phase), dtype=np.complex128)
 
 
 def _read_columns(path: Path) -> dict[str, Floats]:

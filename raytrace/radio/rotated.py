@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 
 from raytrace.arrays import Floats
+from raytrace.radio.antenna_checks import Vector, unit_vector
 from raytrace.radio.antennas import Amplitudes, Antenna
 
-Vector = tuple[float, float, float]
+TOLERANCE = 1e-6
+"""By which axes may differ from orthogonal unit vectors."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,18 @@ class Rotated:
     x_axis: Vector
     z_axis: Vector
 
+    def __post_init__(self) -> None:
+        """Check the axes; raise ValueError where they are not orthogonal unit vectors."""
+        axes = np.array([self.x_axis, self.z_axis], dtype=np.float64)
+        if axes.shape != (2, 3) or not (np.abs(axes) <= 1.0 + TOLERANCE).all():
+            off = np.inf
+        else:
+            off = np.abs(axes @ axes.T - np.eye(2)).max()
+        if off > TOLERANCE:
+            raise ValueError(
+                f"x_axis = {self.x_axis}, z_axis = {self.z_axis}: expected orthogonal unit vectors"
+            )
+
     @classmethod
     def towards(cls, antenna: Antenna, direction: Vector) -> Rotated:
         """Point the +x axis of an antenna in a direction of any length, its y axis level.
@@ -37,17 +52,10 @@ class Rotated:
         ValueError
             For a direction that is none.
         """
-        x, y, z = np.asarray(direction, dtype=np.float64)
-        length, level = float(np.hypot(np.hypot(x, y), z)), float(np.hypot(x, y))
-        if not (np.isfinite(length) and length > 0.0):
-            raise ValueError(f"direction = {direction}: expected finite numbers, not all 0")
-        cosine, sine = (x / level, y / level) if level > 0.0 else (1.0, 0.0)
-        up, flat = z / length, level / length
-        return cls(
-            antenna,
-            (float(cosine * flat), float(sine * flat), float(up)),
-            (float(-cosine * up), float(-sine * up), float(flat)),
-        )
+        x, y, up = unit_vector("direction", direction)
+        flat = hypot(x, y)
+        cosine, sine = (x / flat, y / flat) if flat > 0.0 else (1.0, 0.0)
+        return cls(antenna, (cosine * flat, sine * flat, up), (-cosine * up, -sine * up, flat))
 
     def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
         """Field amplitudes towards directions; see `raytrace.radio.antennas.Antenna.amplitudes`."""

@@ -54,6 +54,16 @@ def read_antenna(file: Checked, key: str) -> Antenna:
     Hdf5ContentError
         Where it is no antenna of a map file, or its parameters are wrong.
     """
+    try:
+        return _read(file, key)
+    except Hdf5ContentError:
+        raise
+    except ValueError as error:
+        raise Hdf5ContentError(f"attribute {key!r}: {error}") from error
+
+
+def _read(file: Checked, key: str) -> Antenna:
+    """Read an antenna, whose class raises ValueError for wrong parameters."""
     kind = file.text(key)
     if kind == HalfWaveDipole.__name__:
         gain_db = file.number(f"{key}_peak_gain_db")
@@ -62,7 +72,8 @@ def read_antenna(file: Checked, key: str) -> Antenna:
         x, y, z = file.numbers(axis, 3)
         return HalfWaveDipole(gain_db, (x, y, z))
     if kind in _OF_NUMBERS:
-        return _read_numbers(_OF_NUMBERS[kind], file, key)
+        of_numbers = _OF_NUMBERS[kind]
+        return of_numbers(**{f.name: file.number(f"{key}_{f.name}") for f in fields(of_numbers)})
     if kind != PatternTable.__name__:
         raise Hdf5ContentError(f"attribute {key!r}: {kind!r} is not an antenna of a map file")
     pattern, sizes = file.within(key), (f"{key}.n_theta", f"{key}.n_phi")
@@ -73,17 +84,6 @@ def read_antenna(file: Checked, key: str) -> Antenna:
         pattern.array("e_phi", np.complex128, sizes),
         file.text(f"{key}_name"),
     )
-
-
-def _read_numbers(
-    kind: type[Isotropic | Monopole | Patch | Sector], file: Checked, key: str
-) -> Antenna:
-    """Read an antenna that is given by numbers alone."""
-    numbers = {field.name: file.number(f"{key}_{field.name}") for field in fields(kind)}
-    try:
-        return kind(**numbers)
-    except ValueError as error:
-        raise Hdf5ContentError(f"attribute {key!r}: {error}") from error
 
 
 def _fields(antenna: Antenna) -> dict[str, Any]:

@@ -1,11 +1,16 @@
 """Channels between the elements of two antenna arrays, from paths between their positions."""
 
+from operator import index
+
 import numpy as np
 
 from raytrace.arrays import Complexes, Floats
+from raytrace.memory import check_size
 from raytrace.radio.antenna_array import AntennaArray
 from raytrace.results.paths import Paths
 
+MAX_OFFSET_HZ = 1e15
+"""Largest offset from the carrier [Hz]."""
 _SINGLE = AntennaArray()
 
 
@@ -43,15 +48,22 @@ def channel_matrix(
     Raises
     ------
     ValueError
-        For a path to a receiver beyond `n_receivers`.
+        For a path to a receiver beyond `n_receivers`, or offsets that are not finite.
+    MemoryLimitError
+        For more channels than half of the free memory holds.
     """
+    offsets = np.asarray(offsets_hz, dtype=np.float64)
+    if offsets.ndim != 1 or not (np.abs(offsets) <= MAX_OFFSET_HZ).all():
+        raise ValueError(f"offsets_hz = {offsets_hz}: expected a list of numbers, up to 1e15 Hz")
     most = int(paths.receiver.max(initial=-1)) + 1
-    n = most if n_receivers is None else n_receivers
+    n = most if n_receivers is None else index(n_receivers)
     if n < most:
         raise ValueError(f"n_receivers = {n}: expected at least {most}, paths reach so many")
+    check_size("channels", 16 * n * len(offsets) * len(receive) * len(transmit))
+    check_size("phases of paths", 32 * len(paths) * (len(offsets) + len(receive) + len(transmit)))
     departing = transmit.response(paths.departure_direction)
     arriving = receive.response(paths.arrival_direction)
-    phase = -2.0 * np.pi * np.asarray(offsets_hz)[:, None] * paths.delay_s
+    phase = -2.0 * np.pi * offsets[:, None] * paths.delay_s
     gains = paths.weight * paths.gain * np.exp(1j * phase)
     channels = np.zeros((n, len(gains), len(receive), len(transmit)), dtype=np.complex128)
     for receiver in range(n):

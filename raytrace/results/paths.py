@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from operator import index
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,7 @@ from raytrace.kernels.steps import (
     joined,
     rows_of,
 )
+from raytrace.memory import check_size
 from raytrace.results.csv_file import write_csv
 
 if TYPE_CHECKING:
@@ -248,15 +250,24 @@ class Paths:
         Raises
         ------
         ValueError
-            For a bandwidth that is not positive, or no tap.
+            For a bandwidth that is not from 1e-15 to 1e15 Hz, a start beyond 1e15 s, no tap, or
+            fewer receivers than paths reach.
+        MemoryLimitError
+            For more taps than half of the free memory holds.
         """
-        if not bandwidth_hz > 0.0:
-            raise ValueError(f"bandwidth_hz = {bandwidth_hz}: expected a positive number")
+        if not 1e-15 <= bandwidth_hz <= 1e15:
+            raise ValueError(f"bandwidth_hz = {bandwidth_hz}: expected 1e-15 to 1e15")
+        if not abs(start_s) <= 1e15:
+            raise ValueError(f"start_s = {start_s}: expected a number up to 1e15")
         late = float(self.delay_s.max(initial=start_s)) - start_s
-        taps = int(np.ceil(late * bandwidth_hz)) + 17 if n_taps is None else n_taps
+        taps = int(np.ceil(late * bandwidth_hz)) + 17 if n_taps is None else index(n_taps)
         if taps < 1:
             raise ValueError(f"n_taps = {taps}: expected at least 1")
-        most = int(self.receiver.max(initial=-1)) + 1 if n_receivers is None else n_receivers
+        reached = int(self.receiver.max(initial=-1)) + 1
+        most = reached if n_receivers is None else index(n_receivers)
+        if most < reached:
+            raise ValueError(f"n_receivers = {most}: expected at least {reached}")
+        check_size("taps", 16 * most * taps)
         channel = np.zeros((most, taps), dtype=np.complex128)
         shift = bandwidth_hz * (self.delay_s - start_s)
         for n in range(taps):

@@ -148,6 +148,23 @@ def test_a_full_disk_is_an_error_that_names_the_file(tmp_path) -> None:
     assert names(tmp_path) == ["map.h5"]
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
+def test_what_is_no_file_is_not_replaced(tmp_path) -> None:
+    """A file renamed over a device would take its place for all programs."""
+    os.mkfifo(tmp_path / "pipe")
+    pipe = tmp_path / "pipe"
+    with pytest.raises(FileExistsError, match="is not a regular file"), atomic_write(pipe):
+        pass
+    assert pipe.is_fifo()
+    assert names(tmp_path) == ["pipe"]
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="no folder that nobody can write")
+def test_an_error_names_the_file_and_not_the_temporary_one() -> None:
+    with pytest.raises(OSError, match=r"'/proc/map\.h5'"), atomic_write("/proc/map.h5"):
+        pass
+
+
 def test_of_several_files_all_or_none_are_written(tmp_path) -> None:
     assert on_a_small_disk(tmp_path, "all") == f"{errno.EFBIG} {tmp_path / 'b.yaml'}"
     assert names(tmp_path) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -14,13 +15,23 @@ import trimesh
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
-from floorplans import FloorPlan, Opening, Wall
+from floorplans import FloorPlan, Opening, Wall, generate
 from raytrace import (
+    Antenna,
+    AntennaArray,
     Grid,
+    HalfWaveDipole,
+    Isotropic,
+    Monopole,
+    Patch,
+    Paths,
     PatternTable,
+    Rotated,
     Scene,
+    Sector,
     TraceConfig,
     Transmitter,
+    channel_matrix,
     compute_radio_map,
     estimate_cost,
     trace_paths,
@@ -60,6 +71,7 @@ SHAPES = (
     "trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 1]], [[0, 1, 2]])", "trimesh.creation.box()",
 )  # fmt: skip
 """Polygons for outlines, meshes for scenes."""
+ANTENNAS = ("HalfWaveDipole(300)", "Patch(1e300)", "Sector(-300, 0.01, 1e308, 1e308)")
 
 
 WALL = "Wall((3, 0), (3, 4), 'glass', 0.1, 3.0)"
@@ -131,6 +143,36 @@ def _fluctuating(**values: Any) -> object:
     return RssAgent(ToleranceStates(1.0), fluctuation=Fluctuation(**values))
 
 
+def _heard_from(make: Callable[..., Antenna]) -> Callable[..., object]:
+    """Trace to a receiver with the antenna that is made; its gains are finite."""
+
+    def heard(**values: Any) -> object:
+        antenna = make(**values)
+        gain = _paths_from(antenna).gain
+        assert np.isfinite(gain).all(), f"{antenna}: {gain}"
+        return antenna
+
+    return heard
+
+
+def _paths_from(antenna: Antenna) -> Paths:
+    transmitter = Transmitter((1, 1, 1.5), antenna=antenna)
+    return trace_paths(_scene(), transmitter, [[2, 2, 1.5]], TraceConfig(0, 0))
+
+
+def _channels(**values: Any) -> object:
+    array = AntennaArray.linear(2)
+    channels = channel_matrix(_paths_from(Isotropic()), array, array, **values)
+    assert np.isfinite(channels).all()
+    return channels
+
+
+def _taps(**values: Any) -> object:
+    response = _paths_from(Isotropic()).impulse_response(**values)
+    assert all(np.isfinite(part).all() for part in vars(response).values())
+    return response
+
+
 CALLS: dict[str, tuple[Any, dict[str, str]]] = {
     "FloorPlan": (_box_with, {
         "name": "'box'", "outline": "Polygon([(0, 0), (6, 0), (6, 4), (0, 4)])", "height_m": "3.0",
@@ -164,6 +206,41 @@ CALLS: dict[str, tuple[Any, dict[str, str]]] = {
         "theta_deg": "[0, 90, 180]", "phi_deg": "[0, 120, 240, 360]",
         "gain_dbi": "np.zeros((3, 4))", "name": "'table'",
     }),
+    "PatternTable.of": (PatternTable.of, {"antenna": "HalfWaveDipole()", "step_deg": "10"}),
+    "HalfWaveDipole": (_heard_from(HalfWaveDipole), {
+        "peak_gain_db": "0.0", "axis": "(0.0, 1.0, 0.0)",
+    }),
+    "Isotropic": (_heard_from(Isotropic), {"gain_db": "0.0"}),
+    "Monopole": (_heard_from(Monopole), {"peak_gain_db": "0.0"}),
+    "Patch": (_heard_from(Patch), {"permittivity": "2.2"}),
+    "Sector": (_heard_from(Sector), {
+        "peak_gain_db": "8.0", "beamwidth_deg": "65.0", "front_to_back_db": "30.0",
+        "slant_deg": "0.0",
+    }),
+    "Rotated": (_heard_from(Rotated), {
+        "antenna": "Sector()", "x_axis": "(0.0, 1.0, 0.0)", "z_axis": "(0.0, 0.0, 1.0)",
+    }),
+    "Rotated.towards": (_heard_from(Rotated.towards), {
+        "antenna": "Sector()", "direction": "(0.0, 1.0, 0.0)",
+    }),
+    "AntennaArray": (_heard_from(AntennaArray), {
+        "element": "Patch()", "offsets": "((0.0, 0.0, 0.0),)", "weights": "(1.0,)",
+    }),
+    "AntennaArray.linear": (_heard_from(AntennaArray.linear), {
+        "n": "2", "spacing": "0.5", "axis": "(0.0, 1.0, 0.0)",
+    }),
+    "AntennaArray.planar": (_heard_from(AntennaArray.planar), {
+        "n_y": "2", "n_z": "2", "spacing": "0.5",
+    }),
+    "AntennaArray.steered": (AntennaArray.linear(2).steered, {"direction": "(0.0, 1.0, 0.0)"}),
+    "channel_matrix": (_channels, {"offsets_hz": "(0.0, 1e6)", "n_receivers": "1"}),
+    "impulse_response": (_taps, {
+        "bandwidth_hz": "20e6", "n_taps": "64", "start_s": "0.0", "n_receivers": "1",
+    }),
+    "generate": (generate, {
+        "kind": "'flat'", "seed": "1", "area_m2": "60.0", "furniture": "True",
+        "n_transmitters": "3",
+    }),
     "train": (_trained, {
         "runs": "1", "episodes": "2", "seed": "0", "until_converged": "False",
         "min_episodes": "1", "snapshot_episodes": "(1,)", "keep_q": "True", "only_runs": "None",
@@ -187,7 +264,7 @@ PLANS = ("FloorPlan", "Wall", "Opening")
 
 NAMES = {
     "nan": np.nan, "inf": np.inf, "np": np, "small_plans": small_plans, "_mesh": _mesh,
-    "Wall": Wall,
+    "Wall": Wall, "HalfWaveDipole": HalfWaveDipole, "Sector": Sector, "Patch": Patch,
     "Polygon": Polygon, "trimesh": trimesh,
 }  # fmt: skip
 
@@ -198,6 +275,8 @@ def _absurd(right: str) -> tuple[str, ...]:
     if kind in ("Polygon", "_mesh"):
         word = {"Polygon": "Polygon", "_mesh": "trimesh"}[kind]
         return tuple(shape for shape in SHAPES if shape.startswith(word))
+    if kind in ("HalfWaveDipole", "Sector", "Patch"):
+        return ANTENNAS
     if right.startswith("[*"):
         return MATERIALS
     if right.startswith("'"):

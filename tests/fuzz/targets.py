@@ -24,6 +24,7 @@ from fuzz.text_formats import json_text, toml_text
 from raytrace import (
     AntennaError,
     MapFileError,
+    MemoryLimitError,
     PatternTable,
     RadioMap,
     Scene,
@@ -209,7 +210,8 @@ TARGETS = {
     ),
     "options": Target(commands.cases, commands.run, (), ".txt", by_lines=True),
     "library": Target(
-        calls.cases, calls.run, (PlanError, SceneError, ValueError, TypeError), ".txt",
+        calls.cases, calls.run,
+        (PlanError, SceneError, ValueError, TypeError, MemoryLimitError), ".txt",
         by_lines=True
     ),
 }  # fmt: skip

@@ -167,7 +167,9 @@ def test_wrong_arguments_are_refused(arguments: tuple[str, int], message: str) -
     [
         ({"area_m2": 49.0}, r"area_m2 = 49.0: expected 50 to 10000 m\^2"),
         ({"area_m2": float("nan")}, "area_m2 = nan"),
-        ({"n_transmitters": -1}, "n_transmitters = -1: expected 0 to 1000"),
+        ({"n_transmitters": -1}, "n_transmitters = -1: expected an integer from 0 to 1000"),
+        ({"n_transmitters": 1.5}, r"n_transmitters = 1\.5"),
+        ({"n_transmitters": True}, "n_transmitters = True"),
     ],
 )
 def test_wrong_options_are_refused(options: dict[str, float], message: str) -> None:

@@ -17,6 +17,7 @@ from raytrace.antennas import (
     Rotated,
     Sector,
 )
+from raytrace.radio import antenna_array
 from raytrace.radio.antennas import vertical_amplitude
 from raytrace.results.antenna_file import as_stored
 
@@ -139,17 +140,47 @@ def test_files_keep_arrays_as_tables() -> None:
         (lambda: Patch(0.5), "permittivity = 0.5: expected a number of at least 1"),
         (lambda: Sector(beamwidth_deg=0.0), "beamwidth_deg = 0.0"),
         (lambda: Sector(slant_deg=float("nan")), "slant_deg = nan: expected a finite number"),
-        (lambda: AntennaArray.linear(0), "n = 0: expected at least 1"),
+        (lambda: AntennaArray.linear(0), "n = 0: expected an integer from 1 to 4096"),
         (lambda: AntennaArray(offsets=()), r"offsets of shape \(0,\)"),
         (lambda: AntennaArray(weights=(1.0, 1.0)), r"weights of shape \(2,\): expected \(1,\)"),
         (lambda: AntennaArray.linear(2, axis=(0.0, 0.0, 0.0)), "not all 0"),
         (lambda: AntennaArray.linear(2).steered((0.0, 0.0, 0.0)), "not all 0"),
+        (lambda: HalfWaveDipole(float("nan")), "peak_gain_db = nan: expected a number from -300"),
+        (lambda: Isotropic(1e4), r"gain_db = 10000\.0: expected a number from -300 to 300 dB"),
+        (lambda: Monopole(float("-inf")), "peak_gain_db = -inf"),
+        (lambda: Sector(peak_gain_db=1e308), r"peak_gain_db = 1e\+308"),
+        (lambda: Sector(beamwidth_deg=5e-324), r"expected 0\.01 to 360"),
+        (lambda: Rotated(Patch(), (2.0, 0.0, 0.0), (0.0, 0.0, 1.0)), "expected orthogonal unit"),
+        (lambda: Rotated(Patch(), (1.0, 0.0, 0.0), (1.0, 0.0, 0.0)), "expected orthogonal unit"),
+        (lambda: AntennaArray.linear(2.5), r"n = 2\.5"),  # pyright: ignore[reportArgumentType]
+        (lambda: AntennaArray.linear(10**12), "n = 1000000000000"),
+        (lambda: AntennaArray.planar(100, 100), r"n_y \* n_z = 10000"),
+        (lambda: AntennaArray.linear(2, spacing=float("inf")), "spacing = inf"),
+        (lambda: AntennaArray(offsets=((1e308, 0.0, 0.0),)), "up to 1e\\+06 wavelengths"),
+        (lambda: AntennaArray(weights=(1e308,)), r"up to 1e\+15"),
+        (lambda: PatternTable.of(Isotropic(), 0.0), r"step_deg = 0\.0: expected 0\.1 to 90"),
+        (lambda: PatternTable.of(Isotropic(), 1e-9), "step_deg = 1e-09"),
+        (lambda: PatternTable.of_gain([0, 180], [0, 360], [[1e308] * 2] * 2), "expected finite"),
     ],
 )
 def test_wrong_parameters_are_refused(make: object, message: str) -> None:
     assert callable(make)
     with pytest.raises(ValueError, match=message):
         make()
+
+
+def test_a_direction_may_be_as_long_as_a_number() -> None:
+    far = Rotated.towards(Patch(), (1e308, 1e308, 0.0))
+    np.testing.assert_allclose(far.x_axis, Rotated.towards(Patch(), (1.0, 1.0, 0.0)).x_axis)
+    assert HalfWaveDipole(axis=(0.0, 5e-324, 0.0)) == HalfWaveDipole(axis=(0.0, 1.0, 0.0))
+
+
+def test_the_pattern_of_an_array_is_the_same_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    array = AntennaArray.planar(4, 3, Patch()).steered((1.0, 0.3, 0.1))
+    at = np.meshgrid(np.linspace(-1.0, 1.0, 9), np.linspace(0.0, 6.0, 11), indexing="ij")
+    whole = array.amplitudes(*at)
+    monkeypatch.setattr(antenna_array, "BLOCK", 50)
+    np.testing.assert_allclose(array.amplitudes(*at), whole, rtol=1e-12, atol=1e-15)
 
 
 def test_the_message_about_a_directive_antenna_names_it() -> None:

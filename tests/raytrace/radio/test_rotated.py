@@ -33,5 +33,5 @@ def test_the_pattern_points_in_the_direction_and_keeps_its_gain(direction) -> No
 
 
 def test_a_direction_without_length_is_none() -> None:
-    with pytest.raises(ValueError, match="expected finite numbers, not all 0"):
+    with pytest.raises(ValueError, match="expected three finite numbers, not all 0"):
         Rotated.towards(HalfWaveDipole(), (0.0, 0.0, 0.0))

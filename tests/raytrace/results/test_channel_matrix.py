@@ -11,6 +11,7 @@ import floorplans
 from raytrace import (
     AntennaArray,
     HalfWaveDipole,
+    MemoryLimitError,
     Paths,
     Scene,
     TraceConfig,
@@ -77,6 +78,27 @@ def test_off_the_carrier_a_channel_turns_with_the_delay(paths: Paths) -> None:
 def test_too_few_receivers_are_refused(paths: Paths) -> None:
     with pytest.raises(ValueError, match="n_receivers = 1: expected at least 2"):
         channel_matrix(paths, n_receivers=1)
+
+
+@pytest.mark.parametrize("offsets", [(float("nan"),), (1e308,), 0.0])
+def test_offsets_that_are_no_frequencies_are_refused(paths: Paths, offsets: object) -> None:
+    with pytest.raises(ValueError, match="offsets_hz"):
+        channel_matrix(paths, offsets_hz=offsets)  # pyright: ignore[reportArgumentType]
+
+
+def test_more_than_the_memory_holds_is_refused(paths: Paths) -> None:
+    with pytest.raises(MemoryLimitError, match="channels need at least 16 TB"):
+        channel_matrix(paths, n_receivers=10**12)
+    with pytest.raises(MemoryLimitError, match="taps need at least"):
+        paths.impulse_response(20e6, 10**13)
+    with pytest.raises(MemoryLimitError, match="taps need at least"):
+        paths.impulse_response(20e6, start_s=-1e12)
+
+
+@pytest.mark.parametrize("bandwidth_hz", [0.0, float("inf"), float("nan"), 1e308])
+def test_a_bandwidth_out_of_range_is_refused(paths: Paths, bandwidth_hz: float) -> None:
+    with pytest.raises(ValueError, match="bandwidth_hz"):
+        paths.impulse_response(bandwidth_hz)
 
 
 def test_doppler_is_the_rate_at_which_a_path_becomes_shorter(flat: Scene, paths: Paths) -> None:
