@@ -173,7 +173,7 @@ def split(
             order + required <= limits.max_reflections
             and may_enter(link, i, view.beyond[e])
             and is_strong(
-                limits, order, int(view.beyond[e]), (fraction, met.nearest), leaves, left_out
+                limits, order, int(view.twin[e]), (fraction, met.nearest), leaves, left_out
             )
         ):
             pass_beam(view, link, beam, i, n, e, window)
@@ -187,7 +187,7 @@ def split(
         required = max(link[i, BOUNCES], bounces[e, 1])
         if view.profile[e] >= 0 and order + 1 + required <= limits.max_reflections:
             kept = fraction * largest_fraction(limits, view, e, IS_MIRRORED, met, order)
-            if is_strong(limits, order + 1, cell, (kept, met.nearest), leaves, left_out):
+            if is_strong(limits, order + 1, e, (kept, met.nearest), leaves, left_out):
                 reflect_beam(view, link, beam, i, n, e, window)
                 link[n, BOUNCES] = required
                 beam[n, FRACTION] = kept
@@ -317,7 +317,7 @@ def transmit_beam(
         part = common(beam[i], window, back)
         if not is_wide(beam[i], part) or not may_enter(link, i, int(view.cell_of[f])):
             continue
-        if is_strong(limits, order, int(view.cell_of[f]), kept, leaves, left_out):
+        if is_strong(limits, order, int(f), kept, leaves, left_out):
             pass_beam(view, link, beam, i, n, f, part)
             link[n, CELL] = view.cell_of[f]
             link[n, TRANSMITTED] += 1

@@ -35,7 +35,8 @@ class LossLimit(NamedTuple):
     is_active
         Whether there is a limit.
     least
-        (n_cells,) power below which beams are not grown into a cell [fraction of the transmitted].
+        (n_edges,) power below which beams do not go on from an edge of the plan view into its cell
+        [fraction of the transmitted].
     power_at_1m
         Largest received fraction of the power at 1 m in free space, both antennas included [m^2].
     height, most_reflections
@@ -186,7 +187,7 @@ def largest_fraction(
 def is_strong(
     limits: Limits,
     order: int,
-    cell: int,
+    entry: int,
     kept: tuple[float, float],
     directions: Directions,
     left_out: Floats,
@@ -195,8 +196,8 @@ def is_strong(
 
     Parameters
     ----------
-    limits, order, cell
-        Limits, the beam's wall reflections, and the cell that it is in.
+    limits, order, entry
+        Limits, the beam's wall reflections, and the edge that it enters its cell from.
     kept
         Largest fraction of the power that it keeps, and its shortest length [m], from the root on.
     directions
@@ -208,10 +209,10 @@ def is_strong(
     if not loss.is_active:
         return True
     if len(loss.edge_ways.order) > 0:
-        return is_strong_behind_edge(limits, order, cell, kept, directions, left_out)
+        return is_strong_behind_edge(limits, order, entry, kept, directions, left_out)
     length = max(kept[1], 1e-9)
     power = kept[0] * loss.power_at_1m / (length * length)
-    if power * loss.roots[order, 0] >= loss.least[cell]:
+    if power * loss.roots[order, 0] >= loss.least[entry]:
         return True
     left_out[0] += power * loss.roots[order, 1]
     return False
@@ -221,14 +222,14 @@ def is_strong(
 def is_strong_behind_edge(
     limits: Limits,
     order: int,
-    cell: int,
+    entry: int,
     kept: tuple[float, float],
     directions: Directions,
     left_out: Floats,
 ) -> bool:
     """`is_strong` for a beam from a vertical edge, by the ways to it."""
     loss, ways, (fraction, distance) = limits.loss, limits.loss.edge_ways, kept
-    least, together, k = loss.least[cell], 0.0, 0
+    least, together, k = loss.least[entry], 0.0, 0
     while k < len(ways.order):
         left = loss.most_reflections - order - int(ways.order[k])
         if left < 0:
@@ -326,7 +327,7 @@ def along_edge(low: float, high: float, distance: float, rise: float) -> tuple[f
 def has_strong_way(
     limits: Limits,
     order: int,
-    cell: int,
+    entry: int,
     kept: tuple[float, float],
     slopes: tuple[float, float],
     left_out: Floats,
@@ -337,7 +338,7 @@ def has_strong_way(
 
     Parameters
     ----------
-    limits, order, cell, left_out
+    limits, order, entry, left_out
         See `is_strong`.
     kept
         Its fraction and distance.
@@ -347,7 +348,7 @@ def has_strong_way(
     loss, (fraction, distance) = limits.loss, kept
     if not loss.is_active:
         return True
-    power, least = fraction * loss.power_at_1m, loss.least[cell]
+    power, least = fraction * loss.power_at_1m, loss.least[entry]
     missing, k = 0.0, 0
     low = slopes[0] / math.hypot(1.0, slopes[0])
     high = slopes[1] / math.hypot(1.0, slopes[1])

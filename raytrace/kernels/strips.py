@@ -306,7 +306,7 @@ def split_strip(
             if not possible or order + how + required > limits.max_reflections:
                 continue
             kept = frame[FRACTION] * largest_fraction(limits, view, e, how, met, order)
-            into = view.beyond[e] if how == PASSES else cell
+            into = int(view.twin[e]) if how == PASSES else e
             distance = met.nearest
             if has_strong_way(limits, order + how, into, (kept, distance), slopes, left_out):
                 add_child(view, tree, (i, n, e), how, corners, out, kept)
@@ -341,7 +341,7 @@ def transmit_strip(
         if corners == 0 or not may_enter(tree.link, i, int(view.cell_of[f])):
             continue
         at, slopes = (kept, met.nearest), slopes_of(out, corners)
-        if has_strong_way(limits, order, int(view.cell_of[f]), at, slopes, left_out):
+        if has_strong_way(limits, order, int(f), at, slopes, left_out):
             add_child(view, tree, (i, n, f), IS_TRANSMITTED, corners, out, kept)
             n += 1
     return n

@@ -1,7 +1,7 @@
-"""A limit relative to what arrives anyway: beams far below it are not grown.
+"""A limit relative to what arrives anyway: beams and paths far below it are left out.
 
-The power that arrives in a cell of the plan is that of reflections and transmissions alone, where
-it is least: at the corners of the cell and in its middle.
+Paths are compared with the power of reflections and transmissions alone at their receivers. A beam
+is compared with the least one near the edge of the plan view from which it enters its cell.
 """
 
 import math
@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from raytrace.arrays import Floats, Ints
+from raytrace.arrays import Floats
 from raytrace.config import TraceConfig
 from raytrace.kernels.guard import Guard
 from raytrace.scene import Scene
@@ -18,8 +18,8 @@ from raytrace.solver.loss_limits import limits_from_transmitter
 from raytrace.solver.path_class import Evaluation
 from raytrace.solver.setup import Tracing, prepare, with_receivers
 
-FROM_CORNERS = 0.1
-"""Points are this far from a cell's corners, as a fraction of the way to its middle."""
+FROM_EDGES = 0.1
+"""Points are this far from a cell's edges, as a fraction of the way to its middle."""
 
 
 def prepare_within_range(
@@ -38,40 +38,44 @@ def prepare_within_range(
     limits = limits_from_transmitter(scene, config, evaluation)
     if math.isinf(config.dynamic_range_db):
         return prepare(scene, position, receivers, config, guard, limits)
-    points, first = _points(scene, position[2])
+    points = _points(scene, position[2])
     both = np.concatenate([points, receivers])
     straight = replace(config, max_reflections=0, max_diffractions=0)
     limits = limits_from_transmitter(scene, straight, evaluation)
     tracing = prepare(scene, position, both, straight, guard, limits)
     power = _least(Reflections(tracing).sum_paths(evaluation).power, config, evaluation)
-    least = np.minimum.reduceat(power[: len(points)], first)
-    limits = limits_from_transmitter(scene, config, evaluation, least)
-    tracing = prepare(scene, position, both, config, guard, limits)
-    least = np.concatenate([power[: len(points)], power[len(points) :]])
-    tracing = replace(tracing, least=least)
+    limits = limits_from_transmitter(scene, config, evaluation, _at_edges(scene, power))
+    tracing = replace(prepare(scene, position, both, config, guard, limits), least=power)
+    least = power[len(points) :]
     if not config.max_diffractions:
-        return replace(with_receivers(tracing, receivers), least=least[len(points) :])
+        return replace(with_receivers(tracing, receivers), least=least)
     power = _least(Reflections(tracing).sum_paths(evaluation).power, config, evaluation)
-    loss = limits.loss._replace(least=np.minimum.reduceat(power[: len(points)], first))
+    loss = limits.loss._replace(least=_at_edges(scene, power))
     return replace(
         with_receivers(tracing, receivers),
         limits=limits._replace(loss=loss),
-        least=least[len(points) :],
+        least=least,
         least_diffracted=power[len(points) :],
     )
 
 
-def _points(scene: Scene, z: float) -> tuple[Floats, Ints]:
-    """Points (n, 3) [m] in the cells of the plan, and the number of the first one of each."""
+def _points(scene: Scene, z: float) -> Floats:
+    """Points (2 n_edges, 3) [m] in the cells: near the start and near the middle of each edge."""
     view = scene.view
-    found: list[Floats] = []
-    for first, last in zip(view.cell_edges[:-1], view.cell_edges[1:], strict=True):
-        corners = view.ends[first:last, :2]
-        middle = corners.mean(axis=0)
-        found += [middle[None], corners + FROM_CORNERS * (middle - corners)]
-    xy = np.concatenate(found)
-    first_of_cell = view.cell_edges[:-1] + np.arange(len(view.cell_edges) - 1)
-    return np.column_stack([xy, np.full(len(xy), z)]), first_of_cell
+    sizes = np.diff(view.cell_edges)
+    middle = np.add.reduceat(view.ends[:, :2], view.cell_edges[:-1]) / sizes[:, None]
+    at = np.stack([view.ends[:, :2], 0.5 * (view.ends[:, :2] + view.ends[:, 2:])])
+    xy = at + FROM_EDGES * (middle[view.cell_of] - at)
+    return np.column_stack([xy.reshape(-1, 2), np.full(2 * len(view.ends), z)])
+
+
+def _at_edges(scene: Scene, power: Floats) -> Floats:
+    """Least power (n_edges,) at the points of each edge, its end included."""
+    view = scene.view
+    start, middle = power[: len(view.ends)], power[len(view.ends) : 2 * len(view.ends)]
+    following = np.arange(1, len(view.ends) + 1)
+    following[view.cell_edges[1:] - 1] = view.cell_edges[:-1]
+    return np.minimum(np.minimum(start, start[following]), middle)
 
 
 def _least(power: Floats, config: TraceConfig, evaluation: Evaluation) -> Floats:

@@ -124,7 +124,7 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
         arrivals = Arrivals(order, length, self._power_behind * tree.beam[beams, FRACTION])
         place = np.array([[self._edge.x, self._edge.y]])
         distances = distances_to_cells(t.scene.view, place)
-        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, distances)
+        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, t.scene.view, distances)
         guard = taking(t.guard, len(kept) * leg_bytes(tree.link[beams[kept]]), LEGS)
         view = t.scene.view
         legs = legs_to_edge(view, tree, beams[kept], weight[kept], self._edge, guard)
@@ -226,7 +226,7 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
         )
         distances = distances_to_cells(t.scene.view, t.scene.view.ends[self._near].reshape(2, 2))
         arrivals = self._arrivals(images)
-        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, distances)
+        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, t.scene.view, distances)
         columns: Any = images
         return ImagesIn(*(column[kept] for column in columns)), left_out
 

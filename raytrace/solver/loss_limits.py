@@ -92,7 +92,7 @@ def limits_from_transmitter(
     evaluation
         Materials, antennas, and the power below which beams are not grown.
     least
-        (n_cells,) such a power for each cell of the plan instead [fraction of the transmitted].
+        (n_edges,) such a power for each edge of the plan view instead (see `losses.LossLimit`).
 
     Where transmissions are limited by their number, a beam is not grown where all of its paths
     together are below that power; otherwise, where each one is.
@@ -204,7 +204,7 @@ class Arrivals(NamedTuple):
 
 
 def strong_arrivals(
-    arrivals: Arrivals, limits: Limits, counts: Floats, distances: Floats
+    arrivals: Arrivals, limits: Limits, counts: Floats, view: PlanView, distances: Floats
 ) -> tuple[Ints, float]:
     """Ways on which enough power arrives for some cell of the plan.
 
@@ -214,6 +214,8 @@ def strong_arrivals(
         All ways to an edge, and the limits from the transmitter.
     counts
         (max_reflections + 1,) see `Continuations`.
+    view
+        The plan view.
     distances
         (n_cells,) see `distances_to_cells`.
 
@@ -229,7 +231,8 @@ def strong_arrivals(
     further = counts[limits.max_reflections - arrivals.order]
     length = np.maximum(arrivals.length[:, None] + distances, 1e-9)
     compared = (power if loss.is_alone else power * further)[:, None] / length**2
-    is_strong = (compared >= loss.least).any(axis=1)
+    least = np.minimum.reduceat(loss.least, view.cell_edges[:-1])
+    is_strong = (compared >= least).any(axis=1)
     together = power * further / np.maximum(arrivals.length, 1e-9) ** 2
     return np.flatnonzero(is_strong), float(together[~is_strong].sum())
 

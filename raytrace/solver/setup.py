@@ -144,7 +144,7 @@ def limits_by_number(scene: Scene, config: TraceConfig) -> Limits:
     no_slabs = np.zeros((0, COSINE_BINS, COSINE_BINS))
     loss = LossLimit(
         is_active=False,
-        least=np.zeros(len(scene.view.cell_edges) - 1),
+        least=np.zeros(len(scene.view.line)),
         power_at_1m=0.0,
         height=scene.height_m,
         most_reflections=order,
