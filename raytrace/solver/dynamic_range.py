@@ -32,8 +32,8 @@ def prepare_within_range(
 ) -> Tracing:
     """Grow the beams from a transmitter, see `setup.prepare`, within `config.dynamic_range_db`.
 
-    Beams from the transmitter are compared with the straight paths to a cell, beams from edges with
-    all that is reflected into it.
+    Paths without a diffraction are compared with the straight one, diffracted ones with all that is
+    reflected and transmitted.
     """
     limits = limits_from_transmitter(scene, config, evaluation)
     if math.isinf(config.dynamic_range_db):

@@ -75,7 +75,7 @@ def rows_of(office: Office) -> list[list[str]]:
     for name, (radio_map, seconds) in found.items():
         rss, left_out = radio_map.rss_dbm, radio_map.left_out_db
         seen = np.isfinite(rss) & (best > SENSITIVITY_DBM)
-        error, certified = f"{np.abs(best - rss)[seen].max():.2f}", ""
+        error, certified = f"{np.abs(best[seen] - rss[seen]).max():.2f}", ""
         if name == widest:
             error = ""
         if not math.isinf(radio_map.config.min_power_dbm) and left_out is not None:
