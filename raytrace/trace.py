@@ -33,6 +33,9 @@ from raytrace.solver.path_class import Evaluation
 from raytrace.solver.setup import Tracing
 from raytrace.solver.workers import Stop, Workers
 
+AT_ONCE = 16
+"""Lists of the strongest paths that are kept before they are joined."""
+
 TRACER_VERSION = 6
 """Grows whenever the same scene would give another map."""
 
@@ -44,10 +47,11 @@ def trace_paths(
     config: TraceConfig | None = None,
     *,
     receive_antenna: Antenna | None = None,
+    strongest: int | None = None,
     stop: Stop | None = None,
     max_memory_bytes: int | None = None,
 ) -> Paths:
-    """Find every path to the given receivers.
+    """Find every path to the given receivers, or the strongest ones.
 
     Parameters
     ----------
@@ -59,6 +63,9 @@ def trace_paths(
         How many reflections and diffractions; 6 and 1 by default.
     receive_antenna
         The receivers' antenna; a vertical half-wave dipole of 0 dB peak gain by default.
+    strongest
+        Return at most so many paths of each receiver. All are computed, but the others take 48
+        bytes each for a moment instead of a kilobyte in the end.
     stop, max_memory_bytes
         As for `compute_radio_map`.
 
@@ -69,12 +76,16 @@ def trace_paths(
 
     Raises
     ------
+    ValueError
+        For receivers that are not finite numbers (n, 3), or fewer than one path.
     SceneError
         Where the transmitter is not inside the building.
     TraceStoppedError, MemoryLimitError
         As for `compute_radio_map`.
     """
     receivers = _positions(receivers, "receivers")
+    if strongest is not None and strongest < 1:
+        raise ValueError(f"strongest = {strongest}: expected at least 1, or None for all paths")
     config = config or TraceConfig()
     evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(1, stop) as workers:
@@ -83,15 +94,23 @@ def trace_paths(
         tracing = workers.run(
             prepare_within_range, scene, position, receivers, config, guard, evaluation
         )
-        return workers.run(_list_paths, tracing, evaluation)
+        return workers.run(_list_paths, tracing, evaluation, strongest)
 
 
-def _list_paths(tracing: Tracing, evaluation: Evaluation) -> Paths:
+def _list_paths(tracing: Tracing, evaluation: Evaluation, strongest: int | None) -> Paths:
     found: list[Paths] = []
     for path_class in path_classes(tracing):
-        found.append(path_class.list_paths(evaluation))
+        found.append(path_class.list_paths(evaluation, strongest))
+        if strongest is not None and len(found) == AT_ONCE:
+            found = [_ordered(found).strongest(2 * strongest)]
         most_bytes = COPIES_OF_PATHS * sum(paths.vertices.nbytes for paths in found)
         taking(tracing.guard, most_bytes, "the paths")
+    paths = _ordered(found)
+    return paths if strongest is None else paths.strongest(strongest)
+
+
+def _ordered(found: list[Paths]) -> Paths:
+    """Join lists of paths: receiver by receiver, strongest first."""
     return Paths.joined(found).with_halves_joined().with_bounded_gain().strongest_first()
 
 

@@ -303,6 +303,11 @@ class Paths:
         """Return the same paths, receiver by receiver, strongest first."""
         return self.rows(np.lexsort([self.length_m, -np.abs(self.gain), self.receiver]))
 
+    def strongest(self, count: int) -> Paths:
+        """Return at most so many paths of each receiver, of paths that are strongest first."""
+        first = np.searchsorted(self.receiver, self.receiver)
+        return self.rows(np.flatnonzero(np.arange(len(self)) - first < count))
+
     def rows(self, rows: Ints) -> Paths:
         """Return the paths of the given row numbers, in that order."""
         return Paths(

@@ -5,7 +5,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from raytrace.arrays import Floats, Ints
+from raytrace.arrays import Complexes, Floats, Ints
 from raytrace.kernels.bounds import height_sums
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import Guard
@@ -28,6 +28,9 @@ ALL_HITS = 1 << 62
 
 COPIES_OF_PATHS = 3
 """Most copies of a list of paths that exist at a time, while it is sorted."""
+
+RECORD_BYTES = 3 * 56
+"""Memory of a recorded path with what finding the strongest ones takes."""
 
 HITS, PATHS = "the receivers within the beams", "the paths"
 
@@ -101,9 +104,13 @@ class BeamClass(ABC, Generic[Beams]):
         sums.left_out[np.unique(self._tracing.targets.number)] += left_out
         return sums
 
-    def list_paths(self, evaluation: Evaluation) -> Paths:
+    def list_paths(self, evaluation: Evaluation, strongest: int | None = None) -> Paths:
         """See `PathClass`; the paths are counted first, then recorded."""
-        return self._paths(*self._recorded(evaluation))
+        if strongest is None:
+            return self._paths(*self._recorded(evaluation))
+        beams, record = self._recorded(evaluation, RECORD_BYTES)
+        receiver = beams.hits.pair[record.key[:, 0], 0]
+        return self._paths(beams, _rows(record, strongest_rows(receiver, record.gain, strongest)))
 
     def keep_paths(self, evaluation: Evaluation) -> KeptRecord:
         """See `PathClass`."""
@@ -111,9 +118,7 @@ class BeamClass(ABC, Generic[Beams]):
         receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
 
         def steps_of(rows: Ints) -> Steps:
-            chosen = record._replace(
-                key=record.key[rows], gain=record.gain[rows], weight=record.weight[rows]
-            )
+            chosen = _rows(record, rows)
             n_max = self._max_interactions(beams)
             points, steps = np.zeros((1, n_max + 2, 3)), new_steps(len(rows), n_max)
             self._write_points(beams, chosen, points, steps)
@@ -123,15 +128,21 @@ class BeamClass(ABC, Generic[Beams]):
         power = record.weight * np.abs(record.gain) ** 2
         return KeptRecord(receiver, power, record.weight, steps_of)
 
-    def _recorded(self, evaluation: Evaluation) -> tuple[Beams, Record]:
-        """Return the beams with all their hits, and the paths of these."""
+    def _recorded(
+        self, evaluation: Evaluation, path_bytes: int | None = None
+    ) -> tuple[Beams, Record]:
+        """Return the beams with all their hits, and the paths of these.
+
+        `path_bytes` is what becomes of each path takes; by default its points, steps and copies.
+        """
         grown, _ = self._beams()
         guard, n_beams = self._guard_beside(grown), self._n_beams(grown)
         beams, done = self._hit(grown, np.arange(n_beams), ALL_HITS, guard)
         check_whole(guard, done == n_beams, HITS)
         record = new_record(0)
         for _ in range(2):
-            taking(guard, int(record.used[0]) * self._path_bytes(beams), PATHS)
+            each = self._path_bytes(beams) if path_bytes is None else path_bytes
+            taking(guard, int(record.used[0]) * each, PATHS)
             record = new_record(int(record.used[0]))
             collector = self._collector(evaluation, record, guard)
             self._evaluate(beams, evaluation.tables, collector)
@@ -161,3 +172,19 @@ class BeamClass(ABC, Generic[Beams]):
         length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
         receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
         return Paths(receiver, steps.kind, points, length, record.gain, record.weight, steps)
+
+
+def strongest_rows(receiver: Ints, gain: Complexes, count: int) -> Ints:
+    """Rows of the strongest paths of each receiver, in ascending order.
+
+    Twice as many as `count`: two halves of a grazing path become one later
+    (`Paths.with_halves_joined`).
+    """
+    order = np.lexsort([-np.abs(gain), receiver])
+    first = np.searchsorted(receiver[order], receiver[order])
+    return np.sort(order[np.arange(len(order)) - first < 2 * count])
+
+
+def _rows(record: Record, rows: Ints) -> Record:
+    """Return some of the recorded paths."""
+    return record._replace(key=record.key[rows], gain=record.gain[rows], weight=record.weight[rows])

@@ -65,8 +65,8 @@ class PathClass(Protocol):
         """Sum the paths at each receiver, or only those of some of the beams."""
         ...
 
-    def list_paths(self, evaluation: Evaluation) -> Paths:
-        """List the paths one by one."""
+    def list_paths(self, evaluation: Evaluation, strongest: int | None = None) -> Paths:
+        """List the paths one by one, or only so many of each receiver, the strongest."""
         ...
 
     def keep_paths(self, evaluation: Evaluation) -> KeptRecord:
