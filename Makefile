@@ -31,8 +31,8 @@ maps: install ## compute the RSS maps of both scenarios that are not current
 experiments: install ## the whole paper: maps, training, figures, tables, report (QUICK=1: fewer runs)
 	$(BIN)/rssnav experiments --out $(RESULTS) $(if $(QUICK),--quick)
 
-test: install ## run the tests
-	$(BIN)/python -m pytest
+test: install ## run the tests, on up to four processors
+	$(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile
 
 test-lowest: ## run the tests on the oldest versions of all libraries, in an environment of their own
 	test -x $(VENV)-lowest/bin/python || $(PYTHON) -m venv $(VENV)-lowest

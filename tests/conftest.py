@@ -1,6 +1,6 @@
 """Shared by all tests: hypothesis repeats itself, and the scenarios' maps are made once."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from functools import cache
 
 import pytest
@@ -11,6 +11,17 @@ from raytrace import Grid, RadioMap, Scene, Transmitter, compute_radio_map
 
 settings.register_profile("rssnav", deadline=None, derandomize=True, print_blob=False)
 settings.load_profile("rssnav")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Escape what is no text in captured output: other processes get reports as UTF-8."""
+    report = yield
+    report.sections = [
+        (name, text.encode("utf-8", "backslashreplace").decode()) for name, text in report.sections
+    ]
+    return report
+
 
 ScenarioMap = Callable[[str], RadioMap]
 

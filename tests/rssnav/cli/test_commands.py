@@ -6,6 +6,7 @@ import io
 import json
 import re
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -345,7 +346,7 @@ def test_the_explorer_limits_the_memory_of_a_tab(options, limit, monkeypatch) ->
     def serve(_plan: object, settings: Any, _ready: object) -> None:
         raise TraceCalledError(settings.limits.trace_bytes)
 
-    monkeypatch.setattr("rssnav.explorer.server.serve", serve)
+    monkeypatch.setattr(import_module("rssnav.explorer.server"), "serve", serve)
     assert run("explore", "flat", *options).exception.args == (limit,)
 
 
