@@ -12,10 +12,10 @@ POWER = Range(-200.0, 200.0, "dBm")
 FREQUENCY = Range(1e6, 1e12, "Hz")
 MAX_TRANSMITTERS = 1000
 
-ANTENNAS = ("isotropic", "dipole", "monopole", "patch", "sector")
+ANTENNAS = ("isotropic", "unpolarised", "dipole", "monopole", "patch", "sector")
 """Antennas with a name; any other is the path of a CSV file with a pattern."""
 
-WITHOUT_DIRECTION = ("isotropic", "monopole")
+WITHOUT_DIRECTION = ("isotropic", "unpolarised", "monopole")
 """Antennas with a name that have no direction; a monopole stands upright."""
 
 ALL = "all"

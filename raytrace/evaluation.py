@@ -17,13 +17,13 @@ from raytrace.memory import memory_limit
 from raytrace.radio.antennas import Antenna
 from raytrace.radio.materials import Slab
 from raytrace.radio.table_slopes import SlabsAt, table_slopes
-from raytrace.radio.tables import both_tables, field_tables
+from raytrace.radio.tables import both_tables, step_tables, tables_of_polarisations
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.paths import Paths
 from raytrace.results.step_lanes import gains_of
 from raytrace.scene import Scene
 from raytrace.solver.dynamic_range import prepare_within_range
-from raytrace.solver.evaluation import evaluation_of
+from raytrace.solver.evaluation import evaluations_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.kept_paths import KeptPaths, keep_paths
 from raytrace.solver.workers import Stop, Workers
@@ -61,7 +61,9 @@ def evaluate_paths(
     """
     if paths.steps is None:
         raise ValueError("these paths have no steps: expected paths that trace_paths found")
-    tables = field_tables(transmitter, slabs, receive_antenna=receive_antenna, through_walls=True)
+    tables = tables_of_polarisations(
+        transmitter, slabs, receive_antenna=receive_antenna, through_walls=True
+    )
     return replace(paths, gain=gains_of(tables, paths.steps)).with_bounded_gain()
 
 
@@ -111,11 +113,10 @@ class TracedPoints:
         slabs, transmitter, receive_antenna
             Other ones than it was traced with.
         """
-        tables = field_tables(
+        tables = step_tables(
             transmitter or self.transmitter,
             slabs or self.slabs,
             receive_antenna=receive_antenna or self.receive_antenna,
-            through_walls=True,
         )
         return self.kept.powers(tables)
 
@@ -139,11 +140,8 @@ class TracedPoints:
         frequency_hz = self.transmitter.frequency_hz
         of_slabs = both_tables(slabs_at(values), frequency_hz)
         slopes, value_of = table_slopes(slabs_at, values, frequency_hz, of_slabs)
-        tables = field_tables(
-            self.transmitter,
-            slabs_at(values),
-            receive_antenna=self.receive_antenna,
-            through_walls=True,
+        tables = step_tables(
+            self.transmitter, slabs_at(values), receive_antenna=self.receive_antenna
         )
         powers, by_slab = self.kept.powers_and_slopes(tables, slopes)
         return powers, sum_by_value(by_slab, value_of, len(values))
@@ -198,12 +196,12 @@ def trace_points(
     if not 0.0 <= max_left_out < 1.0:
         raise ValueError(f"max_left_out = {max_left_out}: expected a fraction from 0 to below 1")
     config = config or TraceConfig()
-    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
+    evaluations = evaluations_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(threads, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
         tracing = workers.run(
-            prepare_within_range, scene, transmitter.position, points, config, guard, evaluation
+            prepare_within_range, scene, transmitter.position, points, config, guard, evaluations[0]
         )
         classes = path_classes(tracing.shared_by(workers.n))
-        kept = keep_paths(workers, classes, evaluation, len(points), max_left_out, tracing.guard)
+        kept = keep_paths(workers, classes, evaluations, len(points), max_left_out, tracing.guard)
     return TracedPoints(scene.slabs, transmitter, receive_antenna, kept)

@@ -3,7 +3,8 @@
 import platform
 import time
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -21,12 +22,13 @@ from raytrace.radio.transmitter import Transmitter
 from raytrace.results.layers import layers_of, received_dbm
 from raytrace.results.paths import Paths
 from raytrace.results.radio_map import RadioMap
+from raytrace.results.step_lanes import gains_of
 from raytrace.results.transmitter_maps import TransmitterMaps
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import Progress, sum_paths
 from raytrace.solver.beam_class import COPIES_OF_PATHS
 from raytrace.solver.dynamic_range import prepare_within_range
-from raytrace.solver.evaluation import evaluation_of
+from raytrace.solver.evaluation import evaluations_of
 from raytrace.solver.extruded_classes import cells_bytes, path_classes
 from raytrace.solver.limits import taking
 from raytrace.solver.path_class import Evaluation
@@ -87,26 +89,38 @@ def trace_paths(
     if strongest is not None and strongest < 1:
         raise ValueError(f"strongest = {strongest}: expected at least 1, or None for all paths")
     config = config or TraceConfig()
-    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
+    evaluations = evaluations_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(1, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
         position = transmitter.position
         tracing = workers.run(
-            prepare_within_range, scene, position, receivers, config, guard, evaluation
+            prepare_within_range, scene, position, receivers, config, guard, evaluations[0]
         )
-        return workers.run(_list_paths, tracing, evaluation, strongest)
+        return workers.run(_list_paths, tracing, evaluations, strongest)
 
 
-def _list_paths(tracing: Tracing, evaluation: Evaluation, strongest: int | None) -> Paths:
+def _list_paths(
+    tracing: Tracing, evaluations: Sequence[Evaluation], strongest: int | None
+) -> Paths:
     found: list[Paths] = []
+    of_class = strongest if len(evaluations) == 1 else None
     for path_class in path_classes(tracing):
-        found.append(path_class.list_paths(evaluation, strongest))
+        listed = path_class.list_paths(evaluations[0], of_class)
+        found.append(_with_added_powers(listed, evaluations))
         if strongest is not None and len(found) == AT_ONCE:
             found = [_ordered(found).strongest(2 * strongest)]
         most_bytes = COPIES_OF_PATHS * sum(paths.vertices.nbytes for paths in found)
         taking(tracing.guard, most_bytes, "the paths")
     paths = _ordered(found)
     return paths if strongest is None else paths.strongest(strongest)
+
+
+def _with_added_powers(paths: Paths, evaluations: Sequence[Evaluation]) -> Paths:
+    """Return paths whose powers are the sums of those of several evaluations."""
+    if len(evaluations) == 1 or paths.steps is None or not len(paths):
+        return paths
+    gains = gains_of([evaluation.tables for evaluation in evaluations], paths.steps)
+    return replace(paths, gain=gains)
 
 
 def _ordered(found: list[Paths]) -> Paths:
@@ -163,17 +177,19 @@ def compute_radio_map(
     """
     started = time.perf_counter()
     config = config or TraceConfig()
-    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
+    evaluations = evaluations_of(scene.slabs, transmitter, config, receive_antenna)
     with watched_compilation() as compilation, Workers(threads, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
-        needed_bytes = cells_bytes(scene, grid.x.size * grid.y.size, config, workers.n)
+        needed_bytes = len(evaluations) * cells_bytes(
+            scene, grid.x.size * grid.y.size, config, workers.n
+        )
         guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
         points = grid.points()
         position = transmitter.position
         tracing = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluation
+            prepare_within_range, scene, position, points, config, guard, evaluations[0]
         )
-        sums = _sum_paths(workers, tracing, evaluation, progress)
+        sums = _sum_paths(workers, tracing, evaluations, progress)
     straight_m = np.linalg.norm(points - np.array(transmitter.position), axis=1)
     _warn_of_near_cells(sums, points)
     layers = layers_of(sums, straight_m, transmitter.power_dbm)
@@ -286,16 +302,16 @@ def received_power(
     config = config or TraceConfig()
     if not len(points):
         return np.empty(0)
-    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
+    evaluations = evaluations_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(threads, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
-        needed_bytes = cells_bytes(scene, len(points), config, workers.n)
+        needed_bytes = len(evaluations) * cells_bytes(scene, len(points), config, workers.n)
         guard = taking(guard, needed_bytes, f"{len(points)} points")
         position = transmitter.position
         tracing = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluation
+            prepare_within_range, scene, position, points, config, guard, evaluations[0]
         )
-        sums = _sum_paths(workers, tracing, evaluation, progress)
+        sums = _sum_paths(workers, tracing, evaluations, progress)
     return received_dbm(sums.power, transmitter.power_dbm)
 
 
@@ -308,12 +324,15 @@ def _positions(points: Floats, name: str) -> Floats:
 
 
 def _sum_paths(
-    workers: Workers, tracing: Tracing, evaluation: Evaluation, progress: Progress | None
+    workers: Workers,
+    tracing: Tracing,
+    evaluations: Sequence[Evaluation],
+    progress: Progress | None,
 ) -> Sums:
     """Sum all paths at each receiver of a tracing."""
     classes = path_classes(tracing.shared_by(workers.n))
     max_paths = tracing.config.max_paths
-    return sum_paths(workers, classes, evaluation, max_paths=max_paths, progress=progress)
+    return sum_paths(workers, classes, evaluations, max_paths=max_paths, progress=progress)
 
 
 def _warn_of_near_cells(sums: Sums, points: Floats) -> None:

@@ -29,7 +29,7 @@ class Preset:
 
 PRESETS: dict[PresetName, Preset] = {
     "paper": Preset(TraceConfig(6, 1, 0), HalfWaveDipole()),
-    "building": Preset(TraceConfig(3, 1, 3), Isotropic()),
+    "building": Preset(TraceConfig(3, 1, 3), Isotropic(polarisation="mean")),
 }
 """``paper`` has opaque walls and vertical dipoles, as the reproduced paper has; ``building`` lets
 waves through walls, and knows nothing of the antennas."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -18,7 +18,13 @@ SOURCE = "source"
 
 Position = tuple[float, float, float]
 
-_NAMED = {"isotropic": Isotropic, "monopole": Monopole, "patch": Patch, "sector": Sector}
+_NAMED: dict[str, Callable[[], Antenna]] = {
+    "isotropic": Isotropic,
+    "unpolarised": lambda: Isotropic(polarisation="mean"),
+    "monopole": Monopole,
+    "patch": Patch,
+    "sector": Sector,
+}
 
 
 class NoTransmitterError(ValueError):

@@ -34,11 +34,15 @@ from raytrace.kernels.step_gains import (
     StepLanes,
     at_wall,
     chosen,
+    components,
     diffraction_of,
     into_edge,
     propagated,
     received,
+    sent_component,
     size_of,
+    squared,
+    taken_amplitudes,
 )
 from raytrace.kernels.steps import (
     ACROSS,
@@ -273,6 +277,57 @@ def behind_wedge(wedge: Floats, backward: Pair) -> Pair:
     return Pair(backward.v * a + backward.h * c, backward.h * a - backward.v * c)
 
 
+@jit(inline=True, fast=True)
+def backward_from(tables: FieldTables, ends: Floats, taken: Pair, scale: Lanes) -> Pair:
+    """Derivatives of powers, up to their size, with respect to the fields at the receivers."""
+    if len(tables.receive) == 1:
+        scale = scale * tables.receive[0]
+        return Pair(conjugate(taken.v) * scale, conjugate(taken.h) * scale)
+    one, zero = complex_of(lanes_of(1.0), 0.0), complex_of(lanes_of(0.0), 0.0)
+    of_amplitude = conjugate(taken.v) * scale
+    v = received(tables, ends, Pair(one, zero))
+    return Pair(v * of_amplitude, received(tables, ends, Pair(zero, one)) * of_amplitude)
+
+
+@jit(inline=True, fast=True)
+def add_backwards(
+    tables: FieldTables,
+    slopes: TableSlopes,
+    lanes: StepLanes,
+    diffraction: Diffraction,
+    work: Work,
+    end: tuple[Pair, int],
+    sums: PowerSums,
+    scratch: Scratch,
+) -> None:
+    """Add what the interactions of a block contribute, from the last one to the first.
+
+    Parameters
+    ----------
+    tables, slopes, lanes, diffraction, work
+        Materials, their derivatives, and the block of paths.
+    end
+        Amplitudes at the receivers, and the number of the diffracted block.
+    sums, scratch
+        Added to; the fields before the interactions, which are known.
+    """
+    (y, d), b, rows, row = end, work.b, tables.slab_rows, scratch.row
+    for back in range(lanes.code.shape[1]):
+        k = lanes.code.shape[1] - 1 - back
+        code, x = load(lanes.code[b, k]), load_pair(scratch.fields[k])
+        is_edge = code >= DIFFRACTED
+        if any_of((code < DIFFRACTED) & ((code > 0.0) | (code < 0.0))):
+            add_wall(sums, slopes, rows, code, lanes.frame[b, k], work, (x, y), row)
+            y = at_wall(tables, code, lanes.frame[b, k], y, -1.0)
+        if any_of(is_edge):
+            wedge = lanes.wedge[d]
+            behind = behind_wedge(wedge, y)
+            fields = into_edge(wedge, x), behind, is_edge
+            edge = wedge, lanes.face[d]
+            add_wedge(sums, slopes, rows, edge, diffraction, work, fields, row)
+            y = chosen(is_edge, before_wedge(wedge, diffraction.dyad, behind), y)
+
+
 @jit(allocates=False, fast=True)
 def add_power_slopes(
     tables: FieldTables,
@@ -297,35 +352,19 @@ def add_power_slopes(
     scratch, guard
         Working arrays, and what may end the work.
     """
-    rows, row = tables.slab_rows, scratch.row
-    one, zero = complex_of(lanes_of(1.0), 0.0), complex_of(lanes_of(0.0), 0.0)
     undiffracted = len(lanes.code) - len(lanes.wedge)
     for b in range(len(lanes.code)):
         if is_stopped(guard):
             break
         d, work = b - undiffracted, Work(receiver, b)
         diffraction = diffraction_of(tables, lanes, d)
-        field = propagated(tables, lanes, b, d, diffraction, scratch.fields)
-        v = received(tables, lanes.ends[b], Pair(one, zero))
-        h = received(tables, lanes.ends[b], Pair(zero, one))
-        amplitude = v * field.v + h * field.h
         size = size_of(tables, lanes, b, d) * load(weight[b])
-        store(row, real_of(amplitude * conjugate(amplitude)) * size)
-        for j in range(WIDTH):
-            sums.power[receiver[b, j]] += row[j]
-        scale = conjugate(amplitude) * (size * 2.0)
-        y = Pair(v * scale, h * scale)
-        for back in range(lanes.code.shape[1]):
-            k = lanes.code.shape[1] - 1 - back
-            code, x = load(lanes.code[b, k]), load_pair(scratch.fields[k])
-            is_edge = code >= DIFFRACTED
-            if any_of((code < DIFFRACTED) & ((code > 0.0) | (code < 0.0))):
-                add_wall(sums, slopes, rows, code, lanes.frame[b, k], work, (x, y), row)
-                y = at_wall(tables, code, lanes.frame[b, k], y, -1.0)
-            if any_of(is_edge):
-                wedge = lanes.wedge[d]
-                behind = behind_wedge(wedge, y)
-                fields = into_edge(wedge, x), behind, is_edge
-                edge = wedge, lanes.face[d]
-                add_wedge(sums, slopes, rows, edge, diffraction, work, fields, row)
-                y = chosen(is_edge, before_wedge(wedge, diffraction.dyad, behind), y)
+        for component in range(components(tables)):
+            sent = sent_component(tables, lanes.ends[b], component)
+            field = propagated(tables, lanes, b, d, diffraction, sent, scratch.fields)
+            taken = taken_amplitudes(tables, lanes.ends[b], field)
+            store(scratch.row, (squared(taken.v) + squared(taken.h)) * size)
+            for j in range(WIDTH):
+                sums.power[receiver[b, j]] += scratch.row[j]
+            y = backward_from(tables, lanes.ends[b], taken, size * 2.0)
+            add_backwards(tables, slopes, lanes, diffraction, work, (y, d), sums, scratch)

@@ -266,6 +266,7 @@ def propagated(
     b: int,
     d: int,
     diffraction: Diffraction,
+    field: Pair,
     fields: Floats,
 ) -> Pair:
     """Fields at the ends of the paths of a block.
@@ -278,15 +279,18 @@ def propagated(
         Number of the block, and its number among those with a diffraction; below 0 for others.
     diffraction
         Of the block.
+    field
+        What is launched.
     fields
         (most, 4, 8) is filled with the fields before each interaction; (0, 4, 8) if these are not
         wanted.
     """
-    field = launched(tables, lanes.ends[b])
     for k in range(lanes.code.shape[1]):
+        code = load(lanes.code[b, k])
+        if not any_of((code > 0.0) | (code < 0.0)):
+            break
         if k < len(fields):
             store_pair(fields[k], field)
-        code = load(lanes.code[b, k])
         is_edge = code >= DIFFRACTED
         if any_of(is_edge):
             wedge = lanes.wedge[d]
@@ -310,6 +314,36 @@ def store_pair(rows: Floats, field: Pair) -> None:
 def chosen(mask: Mask, one: Pair, other: Pair) -> Pair:
     """The first field where the mask is true, the other one elsewhere."""
     return Pair(where_complex(mask, one.v, other.v), where_complex(mask, one.h, other.h))
+
+
+@jit(inline=True)
+def components(tables: FieldTables) -> int:
+    """Number of fields to launch: 2 if the transmitter's polarisation is unknown."""
+    return 2 if len(tables.transmit) == 1 else 1
+
+
+@jit(inline=True, fast=True)
+def sent_component(tables: FieldTables, ends: Floats, component: int) -> Pair:
+    """Field to launch, or one of the two components of an unknown polarisation."""
+    if len(tables.transmit) != 1:
+        return launched(tables, ends)
+    zero, size = complex_of(lanes_of(0.0), 0.0), complex_of(lanes_of(tables.transmit[0]), 0.0)
+    return Pair(size, zero) if component == 0 else Pair(zero, size)
+
+
+@jit(inline=True, fast=True)
+def taken_amplitudes(tables: FieldTables, ends: Floats, field: Pair) -> Pair:
+    """Amplitudes that the receiver takes, whose powers add up; one of them is 0 if it takes one."""
+    if len(tables.receive) == 1:
+        return Pair(field.v * tables.receive[0], field.h * tables.receive[0])
+    return Pair(received(tables, ends, field), complex_of(lanes_of(0.0), 0.0))
+
+
+@jit(inline=True, fast=True)
+def squared(x: ComplexLanes) -> Lanes:
+    """Squared magnitudes."""
+    re, im = real_of(x), imag_of(x)
+    return re * re + im * im
 
 
 @jit(inline=True, fast=True)
@@ -341,7 +375,8 @@ def write_gains(
     undiffracted = len(lanes.code) - len(lanes.wedge)
     for b in range(len(lanes.code)):
         d = b - undiffracted
-        field = propagated(tables, lanes, b, d, diffraction_of(tables, lanes, d), fields)
+        field = launched(tables, lanes.ends[b])
+        field = propagated(tables, lanes, b, d, diffraction_of(tables, lanes, d), field, fields)
         gain = received(tables, lanes.ends[b], field) * scale_of(tables, lanes, b, d)
         store(real[b], real_of(gain))
         store(imag[b], imag_of(gain))
@@ -361,7 +396,8 @@ def add_powers(
     Parameters
     ----------
     tables, lanes
-        Materials, antennas and paths.
+        Materials, antennas (`transmit` or `receive` of one element for an unknown polarisation)
+        and paths.
     receiver, weight
         (n, 8) of the paths; the weight is 0 for what fills up a block.
     scratch
@@ -372,10 +408,13 @@ def add_powers(
     (fields, row), undiffracted = scratch, len(lanes.code) - len(lanes.wedge)
     for b in range(len(lanes.code)):
         d = b - undiffracted
-        field = propagated(tables, lanes, b, d, diffraction_of(tables, lanes, d), fields)
-        amplitude = received(tables, lanes.ends[b], field)
-        re, im = real_of(amplitude), imag_of(amplitude)
-        one = minimum((re * re + im * im) * size_of(tables, lanes, b, d), 1.0)
+        diffraction, power_of_all = diffraction_of(tables, lanes, d), lanes_of(0.0)
+        for component in range(components(tables)):
+            sent = sent_component(tables, lanes.ends[b], component)
+            field = propagated(tables, lanes, b, d, diffraction, sent, fields)
+            taken = taken_amplitudes(tables, lanes.ends[b], field)
+            power_of_all = power_of_all + squared(taken.v) + squared(taken.h)
+        one = minimum(power_of_all * size_of(tables, lanes, b, d), 1.0)
         store(row, one * load(weight[b]))
         for j in range(WIDTH):
             power[receiver[b, j]] += row[j]

@@ -13,7 +13,8 @@ v(-s) E_tau - h(-s) E_psi (docs/theory.md, eq. 32).
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from math import log10
+from typing import Literal, NamedTuple, Protocol, get_args
 
 import numpy as np
 
@@ -100,30 +101,64 @@ def _dipole_shape(cos_chi: Floats) -> Floats:
     return np.where(sin2 > 1e-9, np.cos(0.5 * np.pi * cos_chi) / safe, 0.25 * np.pi)
 
 
+Polarisation = Literal["vertical", "horizontal", "mean"]
+HALF_DB = 10.0 * log10(0.5)
+
+
 @dataclass(frozen=True)
 class Isotropic:
-    """The same amplitude in every direction, vertically polarised.
+    """The same gain in every direction.
 
     Attributes
     ----------
     gain_db
         Gain over a 0 dBi radiator [dB].
+    polarisation
+        Along tau ("vertical") or psi ("horizontal"), or unknown: then powers are means over all
+        polarisations ("mean"; docs/theory.md, eq. 47).
     """
 
     gain_db: float = 0.0
+    polarisation: Polarisation = "vertical"
 
     def __post_init__(self) -> None:
-        """Check the gain; raise ValueError for one out of range."""
+        """Check gain and polarisation; raise ValueError for those that cannot be."""
         check_gain_db("gain_db", self.gain_db)
+        if self.polarisation not in get_args(Polarisation):
+            known = ", ".join(map(repr, get_args(Polarisation)))
+            raise ValueError(f"polarisation = {self.polarisation!r}: expected one of {known}")
 
     def amplitudes(self, sine: Floats, azimuth: Floats) -> Amplitudes:
-        """Field amplitudes towards directions; see `Antenna.amplitudes`."""
+        """Field amplitudes towards directions; see `Antenna.amplitudes`.
+
+        Raises
+        ------
+        SceneError
+            For an unknown polarisation, which has powers but no amplitudes.
+        """
+        if self.polarisation == "mean":
+            raise SceneError(
+                f"antenna {self.describe()!r} has no field amplitudes: expected a polarisation of "
+                '"vertical" or "horizontal"'
+            )
         everywhere = np.full(np.shape(sine), 10.0 ** (self.gain_db / 20.0))
-        return Amplitudes(everywhere, np.zeros_like(everywhere))
+        nowhere = np.zeros_like(everywhere)
+        is_vertical = self.polarisation == "vertical"
+        return Amplitudes(*(everywhere, nowhere) if is_vertical else (nowhere, everywhere))
 
     def describe(self) -> str:
         """Name and parameters in one line."""
-        return f"isotropic, vertically polarised, gain {self.gain_db:g} dB"
+        polarised = {"mean": "mean over polarisations"}
+        how = polarised.get(self.polarisation, f"{self.polarisation}ly polarised")
+        return f"isotropic, {how}, gain {self.gain_db:g} dB"
+
+
+def polarisations(antenna: Antenna) -> tuple[Antenna, ...]:
+    """Return antennas of known polarisation whose received powers add up to those of an antenna."""
+    if isinstance(antenna, Isotropic) and antenna.polarisation == "mean":
+        half_db = antenna.gain_db + HALF_DB
+        return Isotropic(half_db), Isotropic(half_db, "horizontal")
+    return (antenna,)
 
 
 def is_vertical(antenna: Antenna) -> bool:

@@ -1,7 +1,9 @@
 """Lookup tables of the field kernels: slabs, antennas, special functions."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,13 @@ from scipy.special import fresnel
 from raytrace.arrays import Complexes, Floats
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.utd import TRANSITION_MAX, TRANSITION_STEPS
-from raytrace.radio.antennas import Antenna, HalfWaveDipole, is_vertical, vertical_amplitude
+from raytrace.radio.antennas import (
+    Antenna,
+    HalfWaveDipole,
+    is_vertical,
+    polarisations,
+    vertical_amplitude,
+)
 from raytrace.radio.materials import Material, Slab
 from raytrace.radio.slabs import SlabCoefficients
 from raytrace.radio.transmitter import Transmitter
@@ -44,6 +52,47 @@ def field_tables(
         cis=np.column_stack([np.cos(turn), np.sin(turn)]),
         **_antennas(transmitter.antenna, receive_antenna or HalfWaveDipole()),
     )
+
+
+def tables_of_polarisations(
+    transmitter: Transmitter,
+    slabs: Sequence[Slab],
+    *,
+    receive_antenna: Antenna | None = None,
+    through_walls: bool = False,
+) -> tuple[FieldTables, ...]:
+    """Tabulate antennas of known polarisations, whose received powers are to be added.
+
+    One element, that of `field_tables`, unless the polarisation of an antenna is unknown: then one
+    for each of its two components, or four if both are unknown.
+    """
+    transmit = polarisations(transmitter.antenna)
+    receive = polarisations(receive_antenna or HalfWaveDipole())
+    sender = replace(transmitter, antenna=transmit[0])
+    first = field_tables(sender, slabs, receive_antenna=receive[0], through_walls=through_walls)
+    others = list(product(transmit, receive))[1:]
+    return (first, *(first._replace(**_antennas(*both)) for both in others))
+
+
+def step_tables(
+    transmitter: Transmitter, slabs: Sequence[Slab], *, receive_antenna: Antenna | None = None
+) -> FieldTables:
+    """Tabulate all that powers of known paths depend on, see `step_gains.add_powers`.
+
+    The table of an antenna of unknown polarisation has one element, the amplitude of either
+    component.
+    """
+    first, *_ = tables_of_polarisations(
+        transmitter, slabs, receive_antenna=receive_antenna, through_walls=True
+    )
+    ends = {"transmit": transmitter.antenna, "receive": receive_antenna or HalfWaveDipole()}
+    components = {end: polarisations(antenna) for end, antenna in ends.items()}
+    one = {
+        end: np.asarray(parts[0].amplitudes(np.zeros(1), np.zeros(1)).v, dtype=np.float64)
+        for end, parts in components.items()
+        if len(parts) > 1
+    }
+    return first._replace(**one)
 
 
 def _antennas(transmit: Antenna, receive: Antenna) -> dict[str, Any]:

@@ -15,9 +15,9 @@ from raytrace.results.hdf5 import write_array
 TRANSMIT, RECEIVE = "transmit_antenna", "receive_antenna"
 """Prefixes of an antenna's attributes, and names of the groups of their arrays."""
 
-_OF_NUMBERS = {kind.__name__: kind for kind in (Isotropic, Monopole, Patch, Sector)}
+_OF_NUMBERS = {kind.__name__: kind for kind in (Monopole, Patch, Sector)}
 """Antennas that are given by numbers alone, by name."""
-_NAMED = (HalfWaveDipole, PatternTable, *_OF_NUMBERS.values())
+_NAMED = (HalfWaveDipole, Isotropic, PatternTable, *_OF_NUMBERS.values())
 _PATTERN_ARRAYS = {
     "theta_deg": ("deg", "angle from the zenith"),
     "phi_deg": ("deg", "angle from +x towards +y"),
@@ -71,6 +71,8 @@ def _read(file: Checked, key: str) -> Antenna:
             return HalfWaveDipole(gain_db)
         x, y, z = file.numbers(axis, 3)
         return HalfWaveDipole(gain_db, (x, y, z))
+    if kind == Isotropic.__name__:
+        return _read_isotropic(file, key)
     if kind in _OF_NUMBERS:
         of_numbers = _OF_NUMBERS[kind]
         return of_numbers(**{f.name: file.number(f"{key}_{f.name}") for f in fields(of_numbers)})
@@ -84,6 +86,13 @@ def _read(file: Checked, key: str) -> Antenna:
         pattern.array("e_phi", np.complex128, sizes),
         file.text(f"{key}_name"),
     )
+
+
+def _read_isotropic(file: Checked, key: str) -> Isotropic:
+    """Read an isotropic antenna; files of before it had a polarisation have vertical ones."""
+    gain_db, name = file.number(f"{key}_gain_db"), f"{key}_polarisation"
+    polarisation: Any = file.text(name) if name in file.attribute_names else "vertical"
+    return Isotropic(gain_db, polarisation)
 
 
 def _fields(antenna: Antenna) -> dict[str, Any]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from raytrace.arrays import Complexes, Floats, Ints
@@ -42,7 +44,7 @@ def step_lanes(steps: Steps) -> tuple[StepLanes, Ints]:
 
 def blocks_of(paths: Floats) -> Floats:
     """Bring what n * 8 paths have (n * 8, ...) into blocks (n, ..., 8)."""
-    blocks = paths.reshape(-1, WIDTH, *paths.shape[1:])
+    blocks = paths.reshape(len(paths) // WIDTH, WIDTH, *paths.shape[1:])
     return np.ascontiguousarray(np.moveaxis(blocks, 1, -1))
 
 
@@ -64,12 +66,20 @@ def _last_real(path: Ints) -> Ints:
     return np.maximum.accumulate(np.where(path >= 0, np.arange(len(path)), 0))
 
 
-def gains_of(tables: FieldTables, steps: Steps) -> Complexes:
-    """Compute gains (n,), both antennas included, from steps."""
+def gains_of(tables: Sequence[FieldTables], steps: Steps) -> Complexes:
+    """Compute gains (n,), both antennas included, from steps.
+
+    Of several tables the powers are added; the phase is that of the strongest gain.
+    """
     lanes, path = step_lanes(steps)
-    real, imag = np.zeros(path.shape), np.zeros(path.shape)
-    write_gains(tables, lanes, np.empty((0, 4, WIDTH)), real, imag)
-    gains = np.zeros(len(steps.kind), dtype=np.complex128)
     is_real = path >= 0
-    gains[path[is_real]] = (real + 1j * imag)[is_real]
-    return gains
+    gains = np.zeros((len(tables), len(steps.kind)), dtype=np.complex128)
+    for of_one, found in zip(tables, gains, strict=True):
+        real, imag = np.zeros(path.shape), np.zeros(path.shape)
+        write_gains(of_one, lanes, np.empty((0, 4, WIDTH)), real, imag)
+        found[path[is_real]] = (real + 1j * imag)[is_real]
+    if len(tables) == 1:
+        return gains[0]
+    size = np.abs(gains)
+    strongest = np.take_along_axis(gains, size.argmax(axis=0)[None], axis=0)[0]
+    return np.sqrt((size**2).sum(axis=0)) * np.exp(1j * np.angle(strongest))

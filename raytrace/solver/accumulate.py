@@ -29,7 +29,7 @@ def sums_in_work(n_classes: int, threads: int) -> int:
 def sum_paths(
     workers: Workers,
     classes: Sequence[PathClass],
-    evaluation: Evaluation,
+    evaluations: Sequence[Evaluation],
     *,
     max_paths: int | None = None,
     progress: Progress | None = None,
@@ -42,18 +42,18 @@ def sum_paths(
         The threads; the result does not depend on how many there are.
     classes
         At least one; beams that were grown before are used again.
-    evaluation
-        Field tables and power threshold.
+    evaluations
+        Field tables and power threshold; of several, the powers are added.
     max_paths
         Raise the power threshold to where no more paths than that are left; no limit by default.
     progress
         Called as classes are done.
     """
     if max_paths is not None:
-        bounded = _sum(workers, classes, replace(evaluation, min_power=math.inf), None)
-        least = _min_power(bounded.bins, max_paths)
-        evaluation = replace(evaluation, min_power=max(least, evaluation.min_power))
-    return _sum(workers, classes, evaluation, progress)
+        unlimited = [replace(evaluations[0], min_power=math.inf)]
+        least = _min_power(_sum(workers, classes, unlimited, None).bins, max_paths)
+        evaluations = [replace(e, min_power=max(least, e.min_power)) for e in evaluations]
+    return _sum(workers, classes, evaluations, progress)
 
 
 def _min_power(bins: Floats, max_paths: int) -> float:
@@ -67,29 +67,52 @@ def _min_power(bins: Floats, max_paths: int) -> float:
 def _sum(
     workers: Workers,
     classes: Sequence[PathClass],
-    evaluation: Evaluation,
+    evaluations: Sequence[Evaluation],
     progress: Progress | None,
 ) -> Sums:
     """Sum classes as they are done, in their order."""
-    parts = _in_order(workers, classes, evaluation)
-    total = next(parts)
+    parts = _in_order(workers, classes, evaluations)
+    totals = next(parts)
     if progress is not None:
         progress(1, len(classes))
     for done, part in enumerate(parts, 2):
-        add_sums(total, part)
+        for total, addend in zip(totals, part, strict=True):
+            add_sums(total, addend)
         if progress is not None:
             progress(done, len(classes))
-    return total
+    return _added_powers(totals)
 
 
 def _in_order(
-    workers: Workers, classes: Sequence[PathClass], evaluation: Evaluation
-) -> Iterator[Sums]:
-    """Sums of each class, in their order, computed a few ahead."""
-    ahead: deque[Future[Sums]] = deque()
+    workers: Workers, classes: Sequence[PathClass], evaluations: Sequence[Evaluation]
+) -> Iterator[list[Sums]]:
+    """Sum each class with each evaluation, in their order, computed a few ahead."""
+    ahead: deque[Future[list[Sums]]] = deque()
     for path_class in classes:
-        ahead.append(workers.submit(path_class.sum_paths, evaluation))
+        ahead.append(workers.submit(path_class.sum_each, evaluations))
         if len(ahead) > AHEAD * workers.n:
             yield workers.result(ahead.popleft())
     while ahead:
         yield workers.result(ahead.popleft())
+
+
+def _added_powers(parts: Sequence[Sums]) -> Sums:
+    """Add the powers that antennas of several polarisations receive over the same paths.
+
+    So that squared magnitudes of fields add up too, the field has the phase of the first one.
+    """
+    if len(parts) == 1:
+        return parts[0]
+    first = parts[0]
+    size = np.sqrt(sum(np.abs(part.field) ** 2 for part in parts))
+    return first._replace(
+        field=size * np.exp(1j * np.angle(first.field)),
+        power=sum_of([part.power for part in parts]),
+        moments=sum_of([part.moments for part in parts]),
+        left_out=sum_of([part.left_out for part in parts]),
+    )
+
+
+def sum_of(arrays: Sequence[Floats]) -> Floats:
+    """Sum of arrays of one shape."""
+    return np.sum(arrays, axis=0)

@@ -1,6 +1,7 @@
 """What path classes share: beams are grown, receivers within them found, and their paths summed."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -90,7 +91,17 @@ class BeamClass(ABC, Generic[Beams]):
 
     def sum_paths(self, evaluation: Evaluation, beams: Ints | None = None) -> Sums:
         """See `PathClass`."""
-        grown, left_out = self._beams()
+        return self._sum(self._beams(), evaluation, beams)
+
+    def sum_each(self, evaluations: Sequence[Evaluation]) -> list[Sums]:
+        """See `PathClass`."""
+        grown = self._beams()
+        return [self._sum(grown, evaluation, None) for evaluation in evaluations]
+
+    def _sum(
+        self, bounded: tuple[Beams, float], evaluation: Evaluation, beams: Ints | None
+    ) -> Sums:
+        grown, left_out = bounded
         guard = self._guard_beside(grown)
         collector = self._collector(evaluation, no_record(), guard)
         sums = collector.sums
@@ -112,9 +123,13 @@ class BeamClass(ABC, Generic[Beams]):
         receiver = beams.hits.pair[record.key[:, 0], 0]
         return self._paths(beams, _rows(record, strongest_rows(receiver, record.gain, strongest)))
 
-    def keep_paths(self, evaluation: Evaluation) -> KeptRecord:
-        """See `PathClass`."""
-        beams, record = self._recorded(evaluation)
+    def keep_paths(self, evaluations: Sequence[Evaluation]) -> KeptRecord:
+        """See `PathClass`; bounds are the same for all evaluations, and so are the paths."""
+        beams, record = self._recorded(evaluations[0])
+        power = record.weight * np.abs(record.gain) ** 2
+        for evaluation in evaluations[1:]:
+            again = self._recorded_again(beams, evaluation, len(record.gain))
+            power += again.weight * np.abs(again.gain) ** 2
         receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
 
         def steps_of(rows: Ints) -> Steps:
@@ -125,7 +140,6 @@ class BeamClass(ABC, Generic[Beams]):
             check_whole(self._tracing.guard, True, PATHS)
             return steps
 
-        power = record.weight * np.abs(record.gain) ** 2
         return KeptRecord(receiver, power, record.weight, steps_of)
 
     def _recorded(
@@ -143,11 +157,15 @@ class BeamClass(ABC, Generic[Beams]):
         for _ in range(2):
             each = self._path_bytes(beams) if path_bytes is None else path_bytes
             taking(guard, int(record.used[0]) * each, PATHS)
-            record = new_record(int(record.used[0]))
-            collector = self._collector(evaluation, record, guard)
-            self._evaluate(beams, evaluation.tables, collector)
-            check_whole(guard, True, PATHS)
+            record = self._recorded_again(beams, evaluation, int(record.used[0]))
         return beams, record
+
+    def _recorded_again(self, beams: Beams, evaluation: Evaluation, n_paths: int) -> Record:
+        """Return up to that many of the paths of all hits."""
+        guard, record = self._tracing.guard, new_record(n_paths)
+        self._evaluate(beams, evaluation.tables, self._collector(evaluation, record, guard))
+        check_whole(guard, True, PATHS)
+        return record
 
     @abstractmethod
     def _most_walls(self, beams: Beams) -> int:

@@ -28,7 +28,7 @@ from raytrace.radio.transmitter import Transmitter
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import sums_in_work
 from raytrace.solver.dynamic_range import prepare_within_range
-from raytrace.solver.evaluation import evaluation_of
+from raytrace.solver.evaluation import evaluations_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
 from raytrace.solver.setup import prepare
@@ -257,7 +257,8 @@ class _Sampler:
         prepare(self.scene, self.transmitter.position, points, none, guard)
         preparing = time.perf_counter() - started
         started = time.perf_counter()
-        evaluation = evaluation_of(self.scene.slabs, self.transmitter, config)
+        evaluations = evaluations_of(self.scene.slabs, self.transmitter, config)
+        evaluation = evaluations[0]
         position = self.transmitter.position
         tracing = prepare_within_range(self.scene, position, points, config, guard, evaluation)
         classes = path_classes(tracing)
@@ -275,7 +276,8 @@ class _Sampler:
             for beams, each in _some_beams(n_beams):
                 started = time.perf_counter()
                 sums = path_class.sum_paths(evaluation, beams)
-                summing += weight * each * (time.perf_counter() - started)
+                taken = time.perf_counter() - started
+                summing += weight * each * taken * len(evaluations)
                 paths += weight * each * float(sums.n_paths.sum())
                 reached |= sums.power > 0.0
         n_reached = int(np.count_nonzero(reached))

@@ -1,6 +1,6 @@
 """What the solver knows of a path finder: classes of paths that can be summed and listed."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -65,10 +65,14 @@ class PathClass(Protocol):
         """Sum the paths at each receiver, or only those of some of the beams."""
         ...
 
+    def sum_each(self, evaluations: Sequence[Evaluation]) -> list[Sums]:
+        """Sum the paths with each of several evaluations; the beams are grown once."""
+        ...
+
     def list_paths(self, evaluation: Evaluation, strongest: int | None = None) -> Paths:
         """List the paths one by one, or only so many of each receiver, the strongest."""
         ...
 
-    def keep_paths(self, evaluation: Evaluation) -> KeptRecord:
-        """Find the paths one by one, without their points."""
+    def keep_paths(self, evaluations: Sequence[Evaluation]) -> KeptRecord:
+        """Find the paths one by one, without their points; add powers of several evaluations."""
         ...

@@ -57,7 +57,7 @@ Preset = Annotated[
     typer.Option(
         "--preset",
         help="paper: 6 reflections, opaque walls, vertical dipoles; building: 3 reflections, "
-        "transmission, isotropic antennas. Other options override it.",
+        "transmission, isotropic antennas of unknown polarisation. Other options override it.",
         show_default="paper for built-in plans, otherwise building",
     ),
 ]
@@ -206,8 +206,8 @@ AntennaName = Annotated[
         "--antenna",
         metavar="NAME",
         callback=_check_antenna,
-        help="Transmit antenna: isotropic, dipole (vertical), monopole, patch, sector, or a "
-        "CSV file with a pattern.",
+        help="Transmit antenna: isotropic, unpolarised, dipole (vertical), monopole, patch, "
+        "sector, or a CSV file with a pattern.",
         show_default="the transmitter's in the plan, otherwise the preset's",
     ),
 ]
@@ -217,8 +217,8 @@ ReceiveAntennaName = Annotated[
         "--receive-antenna",
         metavar="NAME",
         callback=_check_antenna,
-        help="Receive antenna: isotropic, dipole (vertical), monopole, patch, sector, or a "
-        "CSV file with a pattern.",
+        help="Receive antenna: isotropic, unpolarised, dipole (vertical), monopole, patch, "
+        "sector, or a CSV file with a pattern.",
         show_default=_OF_PRESET,
     ),
 ]

@@ -55,7 +55,7 @@ SurveyFrequency = Annotated[
     ),
 ]
 Antennas = Annotated[
-    Literal["isotropic", "dipole"] | None,
+    Literal["isotropic", "unpolarised", "dipole"] | None,
     typer.Option(
         "--antenna",
         help="Antenna of transmitters and receivers; dipoles are vertical.",

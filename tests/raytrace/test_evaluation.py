@@ -126,6 +126,18 @@ def test_random_plans_with_transmission(seed: int, n_walls: int) -> None:
     np.testing.assert_allclose(kept.powers(scene.slabs), expected, rtol=1e-11, atol=1e-20)
 
 
+def test_straight_paths_alone_can_be_evaluated() -> None:
+    """They have no interactions, and an evaluation of no paths gives none."""
+    room, straight = ROOMS["glass window and door"], TraceConfig(0, 0)
+    sender, points = Transmitter(SOURCE), room.random_points(9, seed=8)
+    paths = trace_paths(room.scene, sender, points, straight)
+    found = evaluate_paths(paths, room.scene.slabs, sender)
+    np.testing.assert_allclose(found.gain, paths.gain, rtol=1e-12)
+    kept = trace_points(room.scene, sender, points, straight)
+    assert 0 < len(paths) == kept.n_paths < len(points)
+    assert (kept.at(np.array([], dtype=np.int64)).powers() == np.empty(0)).all()
+
+
 def test_surfaces_are_where_the_points_are() -> None:
     """Each interaction's angle is that between its two segments, and its slab that of the wall."""
     room = ROOMS["glass window and door"]

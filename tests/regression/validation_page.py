@@ -30,14 +30,17 @@ def tables() -> dict[str, Cells]:
     survey = read_survey(FLAT / "survey.csv", plan, transmitters_of(plan, FLAT))
     scene = scene_of(plan)
     building = TraceSettings(TraceConfig(3, 1, 3), 2.44e9)
-    isotropic = replace(building, transmit_antenna=Isotropic(), receive_antenna=Isotropic())
+    unknown = Isotropic(polarisation="mean")
+    isotropic = replace(building, transmit_antenna=unknown, receive_antenna=unknown)
+    vertical = replace(building, transmit_antenna=Isotropic(), receive_antenna=Isotropic())
     paper = replace(building, config=TraceConfig(6, 1, 0))
     found = {
         name: validate(plan, survey, traced_dbm(scene, survey, settings))
         for name, settings in (
             ("traced, no transmission (preset `paper`)", paper),
-            ("traced, isotropic antennas (preset `building`)", isotropic),
-            ("traced, vertical dipoles (preset `building`)", building),
+            ("traced, isotropic antennas, mean over polarisations (preset `building`)", isotropic),
+            ("traced, isotropic antennas, vertically polarised", vertical),
+            ("traced, vertical dipoles", building),
         )
     }
     first = next(iter(found.values()))

@@ -10,7 +10,7 @@ import floorplans
 from raytrace import HalfWaveDipole, Scene, TraceConfig, Transmitter
 from raytrace.kernels.sums import Sums
 from raytrace.solver.accumulate import sum_paths
-from raytrace.solver.evaluation import evaluation_of
+from raytrace.solver.evaluation import evaluations_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.setup import prepare
 from raytrace.solver.workers import Workers
@@ -50,8 +50,8 @@ class Case(NamedTuple):
         source = Transmitter((x, y, z), antenna=antenna)
         classes = path_classes(prepare(scene, source.position, receivers, self.limits))
         with Workers() as workers:
-            evaluation = evaluation_of(scene.slabs, source, self.limits, antenna)
-            return sum_paths(workers, classes, evaluation)
+            evaluations = evaluations_of(scene.slabs, source, self.limits, antenna)
+            return sum_paths(workers, classes, evaluations)
 
 
 def lattice(plan: floorplans.FloorPlan, step: float, z: float) -> Floats:
