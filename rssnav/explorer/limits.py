@@ -25,6 +25,8 @@ class Limits:
         Maximum size of a message from the browser other than an upload [bytes].
     upload_bytes, plan_bytes : int
         Maximum sizes of an uploaded file, and of the TOML text of its plan [bytes].
+    survey_bytes : int
+        Maximum size of an uploaded survey [bytes].
     entities : int
         Maximum number of entities of a drawing, model or collection.
     walls, openings, outline_points : int
@@ -49,6 +51,7 @@ class Limits:
     message_bytes: int = 64_000
     upload_bytes: int = 8_000_000
     plan_bytes: int = 2_000_000
+    survey_bytes: int = 1_000_000
     entities: int = 100_000
     walls: int = 1500
     openings: int = 1500

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from typing import Any
@@ -21,7 +22,7 @@ from bokeh.models import (
     ResetTool,
     WheelZoomTool,
 )
-from bokeh.palettes import Viridis256
+from bokeh.palettes import RdBu11, Viridis256
 from bokeh.plotting import figure
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
@@ -31,6 +32,8 @@ from shapely import get_coordinates
 from floorplans import FloorPlan
 from floorplans.pictures.legend import SOURCE, START
 from raytrace import RadioMap
+from rssnav.explorer.survey_layer import Residuals
+from rssnav.explorer.tracing import TracedMap
 from rssnav.maps import cells_inside
 from rssnav.pictures.radio_map import FREE_WALL, NO_PATH
 from rssnav.pictures.style import AGENT_COLOURS, INK
@@ -50,6 +53,19 @@ MARK_REACH = 0.03
 """Largest distance from a mark at which a drag begins, as a fraction of the plan's longer side."""
 
 _EMPTY_LINES: dict[str, list[Any]] = {"xs": [], "ys": []}
+RESIDUALS_DB = 10.0
+"""Measured minus traced RSS that has the darkest colour: red for a stronger reading, or blue."""
+
+_EMPTY_READINGS: dict[str, list[float]] = {
+    name: [] for name in ("x", "y", "tx", "measured", "traced", "residual")
+}
+_READING = [
+    ("measured", "@measured{0.0} dBm"),
+    ("traced", "@traced{custom}"),
+    ("difference", "@residual{custom}"),
+    ("transmitter", "@tx"),
+]
+
 _EMPTY_POINTS: dict[str, list[float]] = {"x": [], "y": []}
 
 
@@ -90,10 +106,14 @@ class MapFigure:
         self._mapper = LinearColorMapper(
             palette=Viridis256, low=-1.0, high=0.0, low_color="#00000000", nan_color="#00000000"
         )
-        self._image = ColumnDataSource({name: [] for name in ("rss", "x", "y", "dw", "dh")})
+        self._image = ColumnDataSource(
+            {name: [] for name in ("rss", "server", "x", "y", "dw", "dh")}
+        )
         self._uncovered = ColumnDataSource(dict(_EMPTY_POINTS))
         self._draw_map()
         self._draw_walls(plan, height_m)
+        self._survey = ColumnDataSource(dict(_EMPTY_READINGS))
+        self._draw_survey()
         self._cell = ColumnDataSource(dict(_EMPTY_POINTS))
         self._paths = ColumnDataSource({**_EMPTY_LINES, "colour": []})
         self._flown: NDArray[np.float64] = np.empty((0, 2))
@@ -107,8 +127,9 @@ class MapFigure:
         self.model.on_event(Tap, self._tapped)
         self._follow_drags()
 
-    def show_map(self, radio_map: RadioMap) -> None:
-        """Show a map's RSS, and its other layers in the tooltip."""
+    def show_map(self, radio_map: RadioMap, traced: TracedMap | None = None) -> None:
+        """Show a map's RSS, and its other layers and the best server in the tooltip."""
+        best = None if traced is None else traced.best_server
         grid, half = radio_map.grid, 0.5 * radio_map.grid.cell_size_m
         covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
         if covered.size:
@@ -116,12 +137,15 @@ class MapFigure:
         inside = cells_inside(self._plan, grid)
         self._image.data = {
             **{name: [values] for name, values in _layers(radio_map, inside).items()},
+            "server": [np.zeros(radio_map.rss_dbm.shape) if best is None else best],
             "x": [grid.x[0] - half],
             "y": [grid.y[0] - half],
             "dw": [grid.x[-1] - grid.x[0] + 2 * half],
             "dh": [grid.y[-1] - grid.y[0] + 2 * half],
         }
-        self._hover.tooltips = _tooltips(radio_map)
+        names = () if traced is None else traced.servers
+        self._hover.formatters = {**self._hover.formatters, "@server": _named(names)}
+        self._hover.tooltips = _tooltips(radio_map, names)
         uncovered = ~np.isfinite(radio_map.rss_dbm) & inside
         dark = grid.points()[uncovered.ravel()]
         self._uncovered_cells.glyph.update(width=grid.cell_size_m, height=grid.cell_size_m)
@@ -131,6 +155,10 @@ class MapFigure:
         """Move the marks to the plan's source and start."""
         self._plan = plan
         self._marks.data = _mark_columns(plan)
+
+    def show_survey(self, found: Residuals | None, server: str) -> None:
+        """Draw the readings of a transmitter, or of all, coloured by measured minus traced RSS."""
+        self._survey.data = dict(_EMPTY_READINGS) if found is None else _readings(found, server)
 
     def show_cell(self, centre: tuple[float, float] | None, side_m: float) -> None:
         """Frame the cell at (x, y) [m], or none."""
@@ -218,6 +246,16 @@ class MapFigure:
             major_tick_line_color=None, background_fill_color=None,
         )  # fmt: skip
         self.model.add_layout(bar, "below")
+
+    def _draw_survey(self) -> None:
+        colours = LinearColorMapper(palette=RdBu11, low=-RESIDUALS_DB, high=RESIDUALS_DB)
+        readings = self.model.scatter(
+            "x", "y", source=self._survey, size=9, line_color="white", line_width=0.8,
+            fill_color={"field": "residual", "transform": colours},
+        )  # fmt: skip
+        hover = HoverTool(renderers=[readings], tooltips=_READING, visible=False)
+        hover.formatters = {"@traced": _written_in("dBm"), "@residual": _written_in("dB")}
+        self.model.add_tools(hover)
 
     def _draw_walls(self, plan: FloorPlan, height_m: float) -> None:
         whole = np.array([(wall.start, wall.end) for wall in plan.walls])
@@ -352,6 +390,27 @@ def _layers(radio_map: RadioMap, inside: NDArray[np.bool_]) -> dict[str, NDArray
     return {**layers, "path_count": radio_map.path_count}
 
 
+def _named(names: tuple[str, ...]) -> CustomJSHover:
+    """Return a tooltip format that names an index; -1 is none."""
+    return CustomJSHover(code=f"return {json.dumps(names)}[value] ?? 'none'")
+
+
+def _readings(found: Residuals, server: str) -> dict[str, Any]:
+    """Data columns of the readings of a transmitter; of all, if there are none of that name."""
+    survey = found.survey
+    names = np.array([t.name for t in survey.transmitters])[survey.transmitter]
+    mine = names == server
+    shown = mine if mine.any() else np.ones(len(survey), dtype=bool)
+    return {
+        "x": survey.points[shown, 0],
+        "y": survey.points[shown, 1],
+        "tx": names[shown],
+        "measured": survey.rss_dbm[shown],
+        "traced": found.predicted_dbm[shown],
+        "residual": found.residual_db[shown],
+    }
+
+
 def _written_in(unit: str, factor: float = 1.0) -> CustomJSHover:
     """Return a tooltip format with a unit; an infinite number means no path, NaN outside."""
     return CustomJSHover(
@@ -360,11 +419,13 @@ def _written_in(unit: str, factor: float = 1.0) -> CustomJSHover:
     )
 
 
-def _tooltips(radio_map: RadioMap) -> list[tuple[str, str]]:
+def _tooltips(radio_map: RadioMap, servers: tuple[str, ...] = ()) -> list[tuple[str, str]]:
     """Rows of the tooltip."""
     rows = [("RSS", "@rss{custom}"), ("paths", "@path_count{0,0}")]
     if radio_map.delay_spread_s is not None:
         rows.append(("delay spread", "@delay_spread_s{custom}"))
+    if servers:
+        rows.append(("transmitter", "@server{custom}"))
     return [*rows, ("at", "($x{0.0}, $y{0.0}) m")]
 
 

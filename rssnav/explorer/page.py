@@ -20,6 +20,7 @@ from rssnav.explorer.styles import (
     plan_words,
     problem,
     progress_bar,
+    survey_words,
 )
 from rssnav.explorer.training import Flight
 from rssnav.explorer.training_panel import TrainingPanel
@@ -132,6 +133,7 @@ class Page:
             self._plan_panel.show()
             self._name.object = plan_words(session.plan)
         self._show_map()
+        self._show_survey()
         self._show_paths()
         self._show_training()
         self._status.object = self._status_words()
@@ -169,11 +171,17 @@ class Page:
         """Show a new map; the last one stays until it is there."""
         latest, complete = self._session.maps.latest, self._session.complete_map is not None
         if latest is not None and self._changes.of("map", latest):
-            self._figure.show_map(latest.radio_map)
+            self._figure.show_map(latest.radio_map, latest)
         if self._changes.of("complete", complete, self._session.plan):
             self._downloads.show()
             if complete and self._changes.of("goal", latest):
                 self._training_panel.suggest_goal()
+
+    def _show_survey(self) -> None:
+        session = self._session
+        found, server = session.survey.latest, session.settings.server
+        if self._changes.of("survey", found, server):
+            self._figure.show_survey(found, server)
 
     def _show_paths(self) -> None:
         session = self._session
@@ -230,7 +238,7 @@ class Page:
     def _status_words(self) -> str:
         """HTML of the map's progress, or of what is wrong."""
         session, maps = self._session, self._session.maps
-        trouble = session.problem or maps.problem
+        trouble = session.problem or maps.problem or session.survey.problem
         if trouble:
             return problem(trouble)
         if maps.progress is not None:
@@ -239,4 +247,7 @@ class Page:
             first = maps.latest is None or not maps.progress
             what = "Tracing the reflections" if first else "Adding the diffraction"
             return progress_bar(maps.progress, what)
-        return "" if maps.latest is None else map_words(maps.latest)
+        if maps.latest is None:
+            return ""
+        found = session.survey.latest
+        return map_words(maps.latest) + ("" if found is None else survey_words(found))

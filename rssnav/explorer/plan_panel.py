@@ -7,12 +7,16 @@ import panel as pn
 
 import floorplans
 from floorplans import FloorPlan
+from floorplans.transmitters import ALL
 from rssnav.explorer.inputs import checked_values, number_input
 from rssnav.explorer.ranges import Range
 from rssnav.explorer.session import Session
 from rssnav.explorer.styles import WIDGETS, details
+from rssnav.explorer.survey_layer import CSV, EXAMPLE
 from rssnav.explorer.tracing import MapSettings
 from rssnav.explorer.uploads import ACCEPTED
+from rssnav.presets import PRESETS
+from rssnav.transmitters import SOURCE
 
 GIGA = 1e9
 RANGES = {
@@ -23,6 +27,10 @@ RANGES = {
     "power_dbm": Range("Power [dBm]", -50.0, 60.0),
     "frequency_ghz": Range("Frequency [GHz]", 1.0, 100.0),
 }
+
+
+WALLS = {"opaque": "paper", "let waves through": "building"}
+"""What is shown for each preset."""
 
 
 class PlanDropper(pn.widgets.FileDropper):
@@ -55,6 +63,11 @@ class PlanPanel:
         )
         self._upload = pn.Column(self._dropper(), sizing_mode="stretch_width", margin=0)
         self._report = pn.pane.HTML("", stylesheets=WIDGETS, sizing_mode="stretch_width")
+        self._server, self._preset = (
+            pn.widgets.Select(label=label, stylesheets=WIDGETS, width=152, margin=(3, 5))
+            for label in ("Transmitter", "Walls")
+        )
+        self._preset.options = WALLS
         self._make_settings()
         self._plan.param.watch(self._choose, "value")
         self.view = pn.Column(
@@ -62,7 +75,7 @@ class PlanPanel:
             self._upload,
             self._report,
             pn.pane.HTML("<h2>Map</h2>", stylesheets=WIDGETS, margin=(0, 10)),
-            pn.FlexBox(*self._inputs.values(), gap="0px 8px"),
+            pn.FlexBox(self._server, self._preset, *self._inputs.values(), gap="0px 8px"),
             pn.pane.HTML(
                 '<p class="quiet">Drag the star (source) and the dot (start) on the floor. Hover '
                 "for a cell's RSS, click it for its paths.</p>",
@@ -78,6 +91,15 @@ class PlanPanel:
         plan = self._session.plan
         self._plan.options = self._names()
         self._plan.value = plan.name
+        settings = self._session.settings
+        self._server.options = _servers(plan)
+        self._server.value = settings.server
+        self._server.visible = bool(plan.transmitters)
+        self._preset.value = settings.preset
+        chosen = next((t for t in plan.transmitters if t.id == settings.server), None)
+        stated = (None, None) if chosen is None else (chosen.power_dbm, chosen.frequency_hz)
+        for name, value in zip(("power_dbm", "frequency_ghz"), stated, strict=True):
+            self._inputs[name].disabled = value is not None
         self._report.object = details("Import report", self._session.import_report)
         for name, value in _values(plan, self._session.settings).items():
             self._inputs[name].value = value
@@ -90,7 +112,7 @@ class PlanPanel:
     def _dropper(self) -> PlanDropper:
         limits = self._session.limits
         dropper = PlanDropper(
-            label=f"Or upload a file ({', '.join(ACCEPTED)})",
+            label=f"Or upload a plan ({', '.join(ACCEPTED)}), or a survey in it ({CSV})",
             multiple=False,
             max_file_size=f"{limits.upload_bytes // 1000}KB",
             chunk_size=2 * limits.upload_bytes,
@@ -102,17 +124,33 @@ class PlanPanel:
         return dropper
 
     def _names(self) -> list[str]:
-        """Built-in plans and the open plan."""
-        return list(dict.fromkeys((*floorplans.builtin_names(), self._session.plan.name)))
+        """Built-in plans, the example and the open plan."""
+        known = (*floorplans.builtin_names(), EXAMPLE, self._session.plan.name)
+        return list(dict.fromkeys(known))
 
     def _make_settings(self) -> None:
         self._inputs = {name: number_input(allowed) for name, allowed in RANGES.items()}
         for widget in self._inputs.values():
             widget.param.watch(self._change, "value")
+        self._server.param.watch(self._choose_server, "value")
+        self._preset.param.watch(self._choose_preset, "value")
+
+    def _choose_server(self, event: Any) -> None:
+        if not self._showing and event.new in _servers(self._session.plan).values():
+            self._session.choose_server(event.new)
+
+    def _choose_preset(self, event: Any) -> None:
+        if not self._showing and event.new in PRESETS:
+            session, config = self._session, PRESETS[event.new].config
+            session.change_settings(
+                replace(session.settings, preset=event.new, max_reflections=config.max_reflections)
+            )
 
     def _choose(self, event: Any) -> None:
         if not self._showing and event.new in floorplans.builtin_names():
             self._session.open_builtin(event.new)
+        elif not self._showing and event.new == EXAMPLE:
+            self._session.open_example()
 
     def _take(self, event: Any) -> None:
         """Hand an uploaded file to the session."""
@@ -136,6 +174,12 @@ class PlanPanel:
         session.change_settings(
             replace(session.settings, frequency_hz=frequency_ghz * GIGA, **values)
         )
+
+
+def _servers(plan: FloorPlan) -> dict[str, str]:
+    """Choices of a transmitter: what is shown, and its name."""
+    own = {t.id: t.id for t in plan.transmitters}
+    return {"source (star)": SOURCE, **own, **({"best of all": ALL} if len(own) > 1 else {})}
 
 
 def _values(plan: FloorPlan, settings: MapSettings) -> dict[str, float]:

@@ -8,11 +8,13 @@ import numpy as np
 
 import floorplans
 from floorplans import FloorPlan, PlanError
+from floorplans.transmitters import ALL
 from raytrace import Grid, RadioMap
 from rssnav.explorer.background import FileMaker, NewestOnly, Ticket
 from rssnav.explorer.fair_turns import FairTurns, TabTurns
 from rssnav.explorer.limits import Limits
 from rssnav.explorer.places import with_source_and_start
+from rssnav.explorer.survey_layer import CSV, SurveyTracer, example, read_survey_upload
 from rssnav.explorer.tracing import (
     LatestScene,
     MapCache,
@@ -23,6 +25,9 @@ from rssnav.explorer.tracing import (
 )
 from rssnav.explorer.training import LiveTraining, TrainingSettings
 from rssnav.explorer.uploads import Upload, read_upload
+from rssnav.measurements.survey import Survey
+from rssnav.presets import PRESETS, default_preset
+from rssnav.transmitters import SOURCE
 
 PLACE_DIGITS = 2
 """A dragged source is rounded to centimetres."""
@@ -77,19 +82,20 @@ class Session:
         self._turns = TabTurns(turns or FairTurns(self.limits.jobs))
         self.maps = MapTracer(self.limits, cache or MapCache(), scenes, self._turns)
         self.paths = PathFinder(self.limits, scenes, self._turns)
+        self.survey = SurveyTracer(self.limits, scenes, self._turns)
         self.training: LiveTraining | None = None
         self.cell: tuple[int, int] | None = None
         self.problem = ""
         self._reader = NewestOnly("upload", self._turns)
         self.files = FileMaker(self._turns)
-        self._uploaded: Upload | str | None = None
+        self._uploaded: Upload | Survey | str | None = None
         self.import_report: tuple[str, ...] = ()
         self.open_plan(plan)
 
     def close(self) -> None:
         """Stop all work of this tab."""
         self.stop_training()
-        for part in (self.maps, self.paths, self._reader, self.files):
+        for part in (self.maps, self.paths, self.survey, self._reader, self.files):
             part.close()
 
     @property
@@ -110,11 +116,12 @@ class Session:
         height_m = self.settings.height_m
         if not height_m < plan.height_m:
             height_m = round(plan.height_m / 2, PLACE_DIGITS)
-        settings = replace(self.settings, height_m=height_m)
+        settings = replace(_of_preset(self.settings, plan), height_m=height_m)
         self.limits.check_cells(plan, settings.cell_size_m)
         self._drop_training()
         self.maps.forget()
         self.paths.forget()
+        self.survey.forget()
         self.cell, self.problem, self.import_report = None, "", ()
         self.plan, self.settings = plan, settings
         self._snap_start()
@@ -124,16 +131,41 @@ class Session:
         """Open a built-in plan."""
         self.open_plan(floorplans.load(name))
 
+    def open_example(self) -> None:
+        """Open the measured flat with its survey."""
+        plan, survey = example()
+        self.open_plan(plan)
+        self.survey.open(survey, self.plan, self.settings)
+
+    def choose_server(self, name: str) -> None:
+        """Trace the map of a transmitter of the plan, of the source, or of the best of all.
+
+        The source moves to the place of a transmitter.
+        """
+        position = next((t.position for t in self.plan.transmitters if t.id == name), None)
+        if position is None:
+            self.change_settings(replace(self.settings, server=name))
+            return
+
+        def choose() -> None:
+            self._replace_plan(replace(self.plan, source=position))
+            self._apply(replace(self.settings, server=name))
+
+        self._try(choose)
+
     def upload(self, name: str, content: bytes) -> None:
         """Start to read an uploaded file; `take_upload` opens the result."""
         self._uploaded = None
-        self._reader.submit(partial(self._read, name, content))
+        self._reader.submit(partial(self._read, name, content, self.plan))
 
     def take_upload(self) -> bool:
         """Open an upload that has been read; return whether there was one, rejected or not."""
         found, self._uploaded = self._uploaded, None
         if isinstance(found, Upload):
             self._try(partial(self._open_upload, found))
+        elif isinstance(found, Survey):
+            self.problem = ""
+            self.survey.open(found, self.plan, self.settings)
         elif found is not None:
             self.problem = found
         return found is not None
@@ -142,9 +174,12 @@ class Session:
         self.open_plan(upload.plan)
         self.import_report = upload.report
 
-    def _read(self, name: str, content: bytes, ticket: Ticket) -> None:
+    def _read(self, name: str, content: bytes, plan: FloorPlan, ticket: Ticket) -> None:
         try:
-            found = read_upload(name, content, self.limits, ticket.check)
+            if name.lower().endswith(CSV):
+                found = read_survey_upload(name, content, plan, self.limits)
+            else:
+                found = read_upload(name, content, self.limits, ticket.check)
         except PlanError as error:
             found = str(error)
         ticket.check()
@@ -162,6 +197,7 @@ class Session:
         self._try(lambda: self._replace_plan(replace(before, source=source)))
         if self.plan.source != before.source:
             self._drop_training()
+            self.settings = replace(self.settings, server=SOURCE)
         self.maps.request(self.plan, self.settings)
         self._find_paths()
 
@@ -187,6 +223,7 @@ class Session:
         self.cell, self.settings = None, settings
         self._snap_start()
         self.maps.request(self.plan, settings)
+        self.survey.request(self.plan, settings)
 
     def choose_cell(self, x: float, y: float) -> None:
         """Select the cell at a point [m] and trace its paths; none outside the building."""
@@ -205,12 +242,25 @@ class Session:
             return
         grid, (i_y, i_x) = self.grid, self.cell
         receiver = (float(grid.x[i_x]), float(grid.y[i_y]), grid.height_m)
-        self.paths.request(self.plan, self.settings, receiver)
+        self.paths.request(self.plan, self._settings_at(self.cell), receiver)
+
+    def _settings_at(self, cell: tuple[int, int]) -> MapSettings:
+        """Settings for the paths to a cell: of its best transmitter, where the map is of all."""
+        latest = self.maps.latest
+        if latest is None or latest.best_server is None or latest.settings != self.settings:
+            return self.settings
+        best = max(int(latest.best_server[cell]), 0)
+        return replace(self.settings, server=latest.servers[best])
 
     @property
     def complete_map(self) -> TracedMap | None:
-        """The complete map of the current plan, labelled with it; None until it is traced."""
+        """The complete map of the current plan, labelled with it; None until it is traced.
+
+        A map of the best of all transmitters is none: it has no one transmitter.
+        """
         latest = self.maps.latest
+        if self.settings.server == ALL:
+            return None
         if latest is None or not latest.complete or latest.settings != self.settings:
             return None
         if latest.plan.source != self.plan.source:
@@ -254,6 +304,17 @@ class Session:
             self.problem = ""
         except PlanError as error:
             self.problem = str(error)
+
+
+def _of_preset(settings: MapSettings, plan: FloorPlan) -> MapSettings:
+    """Settings for another plan: built-in ones have opaque walls, as the reproduced paper has."""
+    is_builtin = plan.name in floorplans.builtin_names()
+    is_own = not is_builtin or floorplans.load(plan.name).walls != plan.walls
+    preset = default_preset("" if is_own else plan.name)
+    if preset == settings.preset:
+        return replace(settings, server=SOURCE)
+    reflections = PRESETS[preset].config.max_reflections
+    return replace(settings, preset=preset, max_reflections=reflections, server=SOURCE)
 
 
 def suggested_goal_dbm(radio_map: RadioMap, usual_dbm: float) -> float:

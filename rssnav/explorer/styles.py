@@ -10,6 +10,7 @@ from importlib import resources
 import numpy as np
 
 from floorplans import FloorPlan
+from rssnav.explorer.survey_layer import Residuals
 from rssnav.explorer.tracing import TracedMap
 
 
@@ -52,6 +53,12 @@ def progress_bar(fraction: float | None, what: str) -> str:
     return f"<div>{escape(what)}{percent}</div><progress{value}></progress>"
 
 
+def survey_words(found: Residuals) -> str:
+    """HTML of how far traced RSS is off."""
+    words = f"survey: {thousands(len(found.survey))} readings, sigma {found.sigma_db:.1f} dB"
+    return f'<span class="quiet">{words}; red: measured above traced, blue: below</span>'
+
+
 def plan_words(plan: FloorPlan) -> str:
     """HTML of a plan's name and size."""
     x_min, y_min, x_max, y_max = plan.bounds
@@ -68,6 +75,8 @@ def map_words(traced: TracedMap) -> str:
     if covered.size:
         parts.append(f"{decibels(covered.min(), '')}to {decibels(covered.max())}")
     parts.append(f"{thousands(int(radio_map.path_count.sum()))} paths")
+    if traced.servers:
+        parts.append(f"best of {len(traced.servers)} transmitters")
     parts.append(f"traced in {radio_map.provenance['wall_time_s']:.1f} s")
     if not traced.complete:
         parts.append("without diffraction")

@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from floorplans import FloorPlan, PlanError
+from floorplans.transmitters import ALL
 from raytrace import (
+    Antenna,
     Grid,
     Paths,
     PathStatistics,
@@ -20,15 +22,17 @@ from raytrace import (
     SceneError,
     TraceConfig,
     Transmitter,
-    compute_radio_map,
+    compute_radio_maps,
     trace_paths,
 )
 from rssnav.explorer.background import NewestOnly, Ticket
 from rssnav.explorer.fair_turns import TabTurns
 from rssnav.explorer.limits import Limits
+from rssnav.explorer.transmitters import without_file
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
+from rssnav.presets import PRESETS, PresetName
 from rssnav.scenes import PlanScene
-from rssnav.transmitters import FREQUENCY_HZ, POWER_DBM
+from rssnav.transmitters import FREQUENCY_HZ, POWER_DBM, SOURCE, Sending
 
 Position = tuple[float, float, float]
 
@@ -44,7 +48,11 @@ class MapSettings:
     max_reflections : int
         Maximum number of reflections on a path.
     power_dbm, frequency_hz : float
-        Power [dBm] and carrier frequency [Hz] of the transmitter.
+        Power [dBm] and carrier frequency [Hz] of transmitters that state none.
+    preset : "paper" or "building"
+        Whether waves go through walls, and the antennas.
+    server : str
+        The transmitter: "source", the id of one of the plan's, or "all" for the best in each cell.
     """
 
     cell_size_m: float = CELL_SIZE_M
@@ -52,6 +60,21 @@ class MapSettings:
     max_reflections: int = TraceConfig.max_reflections
     power_dbm: float = POWER_DBM
     frequency_hz: float = FREQUENCY_HZ
+    preset: PresetName = "paper"
+    server: str = SOURCE
+
+    @property
+    def antenna(self) -> Antenna:
+        """Antenna of receivers, and of transmitters without one of their own."""
+        return PRESETS[self.preset].antenna
+
+    def config(self, *, complete: bool) -> TraceConfig:
+        """Return the limits of a trace, with or without diffraction."""
+        return replace(
+            PRESETS[self.preset].config,
+            max_reflections=self.max_reflections,
+            max_diffractions=int(complete),
+        )
 
     def check_height(self, plan: FloorPlan) -> None:
         """Raise `PlanError` if the receivers are not between floor and ceiling."""
@@ -68,8 +91,24 @@ class MapSettings:
         return Grid.over(plan.bounds, self.cell_size_m, self.height_m)
 
     def transmitter(self, plan: FloorPlan) -> Transmitter:
-        """Transmitter at the plan's source."""
-        return Transmitter(plan.require_source(), self.power_dbm, self.frequency_hz)
+        """Transmitter at the plan's source, or that of the plan which is chosen."""
+        chosen = next((t for t in plan.transmitters if t.id == self.server), None)
+        if chosen is None:
+            position = plan.require_source()
+            return Transmitter(position, self.power_dbm, self.frequency_hz, self.antenna)
+        sending = Sending(default_antenna=self.antenna)
+        power_dbm, frequency_hz = chosen.power_dbm, chosen.frequency_hz
+        return sending.transmitter(
+            replace(
+                without_file(chosen),
+                power_dbm=self.power_dbm if power_dbm is None else power_dbm,
+                frequency_hz=self.frequency_hz if frequency_hz is None else frequency_hz,
+            )
+        )
+
+    def transmitters(self, plan: FloorPlan) -> dict[str, Transmitter]:
+        """All transmitters of a plan by name."""
+        return {t.id: replace(self, server=t.id).transmitter(plan) for t in plan.transmitters}
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,12 +123,18 @@ class TracedMap:
     radio_map : RadioMap
     complete : bool
         Whether it includes the paths with a diffraction.
+    servers : tuple of str
+        Names of the transmitters of a map of the best ones; empty for one transmitter.
+    best_server : (n_y, n_x) int64 or None
+        Index into them in each cell; -1 for none.
     """
 
     plan: FloorPlan
     settings: MapSettings
     radio_map: RadioMap
     complete: bool
+    servers: tuple[str, ...] = ()
+    best_server: NDArray[np.int64] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,12 +159,17 @@ class CellPaths:
     @property
     def power_dbm(self) -> NDArray[np.float64]:
         """(n,) power of each path [dBm]."""
-        return self.settings.power_dbm + self.paths.gain_db
+        return self.sent_dbm + self.paths.gain_db
+
+    @property
+    def sent_dbm(self) -> float:
+        """Power of the transmitter [dBm]."""
+        return self.settings.transmitter(self.plan).power_dbm
 
     @cached_property
     def statistics(self) -> PathStatistics:
         """Statistics of the paths at the receiver."""
-        return PathStatistics.of(self.paths, self.settings.power_dbm, 1)
+        return PathStatistics.of(self.paths, self.sent_dbm, 1)
 
 
 class MapCache:
@@ -255,16 +305,22 @@ class MapTracer:
     ) -> TracedMap:
         """Trace one map, by default of the plan's source."""
         self._limits.check_cells(plan, settings.cell_size_m)
-        radio_map = compute_radio_map(
+        several = settings.server == ALL and transmitter is None
+        sending = transmitter or settings.transmitter(plan)
+        maps = compute_radio_maps(
             self._scenes.of(plan),
-            transmitter or settings.transmitter(plan),
+            settings.transmitters(plan) if several else {settings.server: sending},
             settings.grid(plan),
-            TraceConfig(settings.max_reflections, int(complete)),
+            settings.config(complete=complete),
+            receive_antenna=settings.antenna,
             progress=partial(self._show_progress, complete),
             stop=end_of_time(ticket, self._limits.map_s),
             max_memory_bytes=self._limits.trace_bytes,
         )
-        return TracedMap(plan, settings, radio_map, complete)
+        if not several:
+            return TracedMap(plan, settings, maps.first, complete)
+        best = maps.best_server.astype(np.int64)
+        return TracedMap(plan, settings, maps.best_server_map, complete, maps.names, best)
 
     def _show_progress(self, complete: bool, done: int, total: int) -> None:
         self.progress = done / total if complete else 0.0
@@ -318,7 +374,8 @@ class PathFinder:
                 self._scenes.of(plan),
                 settings.transmitter(plan),
                 np.array([receiver]),
-                TraceConfig(settings.max_reflections),
+                settings.config(complete=True),
+                receive_antenna=settings.antenna,
                 stop=end_of_time(ticket, self._limits.map_s),
                 max_memory_bytes=self._limits.trace_bytes,
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -57,7 +58,12 @@ class TraceSettings:
 
 
 def traced_dbm(
-    scene: Scene, survey: Survey, settings: TraceSettings, progress: Progress | None = None
+    scene: Scene,
+    survey: Survey,
+    settings: TraceSettings,
+    progress: Progress | None = None,
+    *,
+    stop: Callable[[], bool] | None = None,
 ) -> Floats:
     """Predict each reading (n,) [dBm] as the sum of the powers of its paths; -inf without a path.
 
@@ -69,6 +75,8 @@ def traced_dbm(
         How it is traced.
     progress
         Called with the number of finished transmitters and of all.
+    stop
+        Ends the trace where it returns True, see `raytrace.received_power`.
 
     Raises
     ------
@@ -88,6 +96,7 @@ def traced_dbm(
                 settings.config,
                 receive_antenna=settings.receive_antenna,
                 threads=settings.threads,
+                stop=stop,
                 max_memory_bytes=settings.max_memory_bytes,
             )
         except SceneError as error:

@@ -21,9 +21,10 @@ from shapely.geometry import Polygon
 
 import floorplans
 import rssnav
-from floorplans import FloorPlan, PlanError, Wall
+from floorplans import FloorPlan, PlanError, PlanTransmitter, Wall
 from floorplans.exporters.formats import export
 from floorplans.geojson_plan import dumps_geojson
+from floorplans.transmitters import ALL
 from raytrace import Paths, RadioMap, TraceConfig
 from rssnav.explorer.background import FileMaker, NewestOnly, SupersededError, TooManyError
 from rssnav.explorer.cell_panel import _summary, page_3d, strongest
@@ -36,11 +37,14 @@ from rssnav.explorer.map_figure import MapFigure, path_colours
 from rssnav.explorer.page import Changes, Page
 from rssnav.explorer.server import host_names, with_port
 from rssnav.explorer.session import Session, suggested_goal_dbm
+from rssnav.explorer.styles import survey_words
 from rssnav.explorer.tracing import CellPaths, MapCache, MapSettings
 from rssnav.explorer.training import Flight, LiveTraining, TrainingSettings, kept_episodes
 from rssnav.explorer.training_panel import running_mean
 from rssnav.explorer.uploads import read_upload
 from rssnav.maps import make_map
+from rssnav.presets import PRESETS
+from rssnav.transmitters import SOURCE, Sending
 
 FLAT = floorplans.load("flat")
 TOML = floorplans.dumps(FLAT)
@@ -502,7 +506,7 @@ def test_what_a_map_carries_shows_under_the_pointer(session) -> None:
     with_spread = session.complete_map.radio_map
     without = replace(with_spread, delay_spread_s=None)
     shown = MapFigure(FLAT, 2.0, on_move=print, on_drag=print, on_tap=print)
-    hover = shown.model.select_one(HoverTool)
+    hover = next(tool for tool in shown.model.select(HoverTool) if not tool.tooltips)
     for drawn, names in (
         (without, ["RSS", "paths", "at"]),
         (with_spread, ["RSS", "paths", "delay spread", "at"]),
@@ -597,3 +601,144 @@ def test_command_refuses_an_origin_with_a_scheme() -> None:
     result = run("explore", "flat", "--no-browser", "--allow-origin", "http://lab")
     assert result.exit_code == 2
     assert "HOST:PORT" in result.output + result.stderr
+
+
+TWO_ROOMS = replace(
+    FLAT,
+    name="two transmitters",
+    transmitters=(
+        PlanTransmitter("east", (9.6, 1.4, 1.5), power_dbm=20.0, antenna="dipole"),
+        PlanTransmitter("west", (1.2, 7.9, 1.5), frequency_hz=5e9),
+    ),
+)
+READINGS = "tx,x,y,z,rss_dbm\n" + "".join(
+    f"{tx},{x:g},{y:g},1.2,{-40 - 3 * k}\n"
+    for k, (x, y) in enumerate([(9.0, 2.0), (8.0, 2.5), (2.0, 7.0), (3.0, 7.5), (2.5, 6.5)])
+    for tx in ("east", "west")
+)
+
+
+@pytest.fixture
+def with_transmitters() -> Iterator[Session]:
+    session = Session(TWO_ROOMS, cache=CACHE)
+    session.change_settings(replace(COARSE, preset="building"))
+    wait_for_map(session)
+    yield session
+    session.close()
+
+
+def test_plans_of_ones_own_let_waves_through_and_built_in_ones_do_not() -> None:
+    for plan, preset in ((FLAT, "paper"), (replace(FLAT, walls=FLAT.walls[:-1]), "building")):
+        session = Session(plan, cache=CACHE)
+        assert session.settings.preset == preset
+        assert session.settings.max_reflections == PRESETS[preset].config.max_reflections
+        session.close()
+
+
+def test_a_transmitter_of_the_plan_is_mapped_as_the_command_does(with_transmitters) -> None:
+    session = with_transmitters
+    session.choose_server("east")
+    wait_for_map(session)
+    traced = session.complete_map.radio_map
+    sent = Sending(default_antenna=session.settings.antenna).transmitter(TWO_ROOMS.transmitters[0])
+    made = make_map(
+        TWO_ROOMS, transmitter=sent, cell_size_m=1.5, config=TraceConfig(2, 1, 3),
+        receive_antenna=session.settings.antenna,
+    )  # fmt: skip
+    np.testing.assert_array_equal(traced.rss_dbm, made.rss_dbm)
+    assert session.plan.source == TWO_ROOMS.transmitters[0].position
+    session.choose_server("west")
+    assert session.settings.transmitter(session.plan).frequency_hz == 5e9
+    session.move_source(2.0, 7.0)
+    assert session.settings.server == SOURCE
+
+
+def test_the_best_transmitter_serves_each_cell(with_transmitters) -> None:
+    session = with_transmitters
+    maps = []
+    for name in ("east", "west"):
+        session.choose_server(name)
+        wait_for_map(session)
+        maps.append(session.complete_map.radio_map.rss_dbm)
+    session.choose_server(ALL)
+    wait_for(lambda: session.maps.latest.servers and session.maps.latest.complete)
+    traced = session.maps.latest
+    assert traced.servers == ("east", "west")
+    np.testing.assert_allclose(traced.radio_map.rss_dbm, np.max(maps, axis=0))
+    assert session.complete_map is None
+    heard = traced.best_server >= 0
+    assert {0, 1} == set(traced.best_server[heard])
+    np.testing.assert_array_equal(traced.best_server[heard], np.argmax(maps, axis=0)[heard])
+    session.choose_cell(9.0, 2.0)
+    wait_for(lambda: session.paths.latest is not None)
+    i_y, i_x = session.cell
+    power = session.paths.latest.statistics.rss_dbm[0]
+    assert power == pytest.approx(traced.radio_map.rss_dbm[i_y, i_x], abs=1e-6)
+    session.train(TrainingSettings())
+    assert "not complete" in session.problem or session.training is None
+
+
+def test_a_survey_is_compared_with_what_is_traced(with_transmitters) -> None:
+    session = with_transmitters
+    session.upload("readings.csv", READINGS.encode())
+    wait_for(session.take_upload)
+    assert session.problem == ""
+    wait_for(lambda: session.survey.latest is not None)
+    found = session.survey.latest
+    assert len(found.survey) == 10
+    assert found.residual_db.mean() == pytest.approx(0.0, abs=1e-9)
+    assert found.sigma_db == pytest.approx(found.residual_db.std())
+    assert "10 readings" in survey_words(found)
+    shown = MapFigure(FLAT, 1.2, on_move=print, on_drag=print, on_tap=print)
+    (readings,) = [r for r in shown.model.renderers if "residual" in r.data_source.column_names]
+    for server, names in ((SOURCE, {"east", "west"}), ("east", {"east"})):
+        shown.show_survey(found, server)
+        assert set(readings.data_source.data["tx"]) == names
+    shown.show_survey(None, SOURCE)
+    assert readings.data_source.data["x"] == []
+    session.open_builtin("flat")
+    assert session.survey.survey is None
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (READINGS.replace("west", "north"), "north"),
+        (READINGS.replace("9,2,1.2", "nan,2,1.2"), "row 2"),
+        ("hello", "survey.csv"),
+    ],
+)
+def test_a_wrong_survey_is_refused(with_transmitters, text, says) -> None:
+    session = with_transmitters
+    session.upload("survey.csv", text.encode())
+    wait_for(session.take_upload)
+    assert says in session.problem
+    assert "/" not in session.problem.replace(" / ", "")
+    assert session.survey.survey is None
+
+
+def test_a_survey_needs_a_plan_with_transmitters(session) -> None:
+    session.upload("survey.csv", READINGS.encode())
+    wait_for(session.take_upload)
+    assert "has no [[transmitters]]" in session.problem
+
+
+def test_an_uploaded_plan_reads_no_pattern_of_the_server(tmp_path) -> None:
+    secret = tmp_path / "pattern.csv"
+    secret.write_text("secret")
+    transmitter = PlanTransmitter("x", (9.6, 1.4, 1.5), antenna=str(secret))
+    session = Session(replace(FLAT, name="own", transmitters=(transmitter,)), cache=CACHE)
+    session.change_settings(replace(COARSE, preset="building"))
+    session.choose_server("x")
+    wait_for_map(session)
+    assert session.complete_map.radio_map.transmitter.antenna == session.settings.antenna
+    session.close()
+
+
+def test_the_example_opens_with_its_survey() -> None:
+    session = Session(FLAT, cache=CACHE)
+    session.settings = replace(COARSE, cell_size_m=2.0)
+    session.open_example()
+    assert session.settings.preset == "building"
+    assert len(session.survey.survey) == 660
+    session.close()
