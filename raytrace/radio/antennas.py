@@ -115,7 +115,7 @@ class Isotropic:
         Gain over a 0 dBi radiator [dB].
     polarisation
         Along tau ("vertical") or psi ("horizontal"), or unknown: then powers are means over all
-        polarisations ("mean"; docs/theory.md, eq. 47).
+        polarisations ("mean"; docs/theory.md, eq. 48).
     """
 
     gain_db: float = 0.0

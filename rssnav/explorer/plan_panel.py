@@ -29,7 +29,7 @@ RANGES = {
 }
 
 
-WALLS = {"opaque": "paper", "let waves through": "building"}
+WALLS = {"opaque": "paper", "transmitting": "building"}
 """What is shown for each preset."""
 
 
@@ -112,7 +112,7 @@ class PlanPanel:
     def _dropper(self) -> PlanDropper:
         limits = self._session.limits
         dropper = PlanDropper(
-            label=f"Or upload a plan ({', '.join(ACCEPTED)}), or a survey in it ({CSV})",
+            label=f"Or upload {', '.join((*ACCEPTED, CSV))}",
             multiple=False,
             max_file_size=f"{limits.upload_bytes // 1000}KB",
             chunk_size=2 * limits.upload_bytes,
