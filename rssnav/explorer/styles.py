@@ -56,7 +56,7 @@ def progress_bar(fraction: float | None, what: str) -> str:
 def survey_words(found: Residuals) -> str:
     """HTML of how far traced RSS is off."""
     words = f"survey: {thousands(len(found.survey))} readings, sigma {found.sigma_db:.1f} dB"
-    return f'<span class="quiet">{words}; red: measured above traced, blue: below</span>'
+    return f'<br><span class="quiet">{words}; red: measured above traced, blue: below</span>'
 
 
 def plan_words(plan: FloorPlan) -> str:
