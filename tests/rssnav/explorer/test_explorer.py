@@ -530,7 +530,8 @@ def test_the_tooltip_tells_outside_from_without_a_path() -> None:
     outside = (radio_map.grid.x > 3) & (radio_map.grid.y[:, None] > 2)
     assert (np.isnan(values) == outside).all()
     assert (np.isneginf(values) == np.isneginf(dark) & ~outside).all()
-    code = shown.model.select_one(HoverTool).formatters["@rss"].code
+    (hover,) = (tool for tool in shown.model.select(HoverTool) if "@rss" in tool.formatters)
+    code = hover.formatters["@rss"].code
     assert code.index("'outside'") < code.index("'no path'")
 
 
