@@ -152,3 +152,12 @@ def test_it_has_no_amplitudes() -> None:
         UNKNOWN.amplitudes(np.zeros(1), np.zeros(1))
     with pytest.raises(ValueError, match="expected one of 'vertical', 'horizontal', 'mean'"):
         Isotropic(polarisation="round")  # pyright: ignore[reportArgumentType]
+
+
+def test_the_strongest_paths_are_those_of_all() -> None:
+    room, points = ROOMS[NAME], ROOMS[NAME].random_points(3, seed=3)
+    paths = trace_paths(room.scene, SENDER, points, CONFIG, receive_antenna=UNKNOWN)
+    few = trace_paths(room.scene, SENDER, points, CONFIG, receive_antenna=UNKNOWN, strongest=4)
+    for k in range(len(points)):
+        expected = np.abs(paths.gain[paths.receiver == k])[:4]
+        np.testing.assert_allclose(np.abs(few.gain[few.receiver == k]), expected, rtol=1e-12)
