@@ -34,7 +34,8 @@ _WORDS: Lists[Kind] = (
         "furn", "mobel", "mobl", "moeb", "meubl", "mueble", "mobil", "arred", "text", "txt", "dim",
         "anno", "hatch", "schraff", "defpoint", "viewport", "vport", "title", "ttlb", "demo ",
         "demol", "label", "iden ", "nplt ", "note ", "notes ", "void", "cote ", "cotes ", "cotat",
-        "bemass", "beschrift", "acot", "skyl", "tremie", "overhead", "ovhd", "abov ", "above ",
+        "bemass", "beschrift", "acot", "skyl", "tremie", "tragaluz", "clarabo", "lucernari",
+        "overhead", "ovhd", "abov ", "above ",
     )),
     ("door", (
         "door", "tur ", "turen ", "turbl", "turrahm", "turzarg", "*haustur", "*innentur",

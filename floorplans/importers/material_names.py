@@ -22,10 +22,10 @@ CAVITY = "air"
 _MATERIAL_WORDS: Lists[str] = (
     ("concrete", ("conc", "beton", "hormig", "calcest", "stahlb", "gasbeton", "*beton ")),
     ("brick", (
-        "brick", "mason", "mauerw", "ziegel", "*ziegel ", "briq", "ladrill", "matton", "cmu",
-        "bakst", "tijol", "kalksand", "klinker", "clinker", "macon", "murerv", "tegelst", "ytong",
-        "poroton", "porenb", "parpaing", "mamposter", "muratura", "metselw", "tugla", "cegl",
-        "blockw", "adobe",
+        "brick", "mason", "masn ", "mauerw", "ziegel", "*ziegel ", "briq", "ladrill", "matton",
+        "cmu", "bakst", "tijol", "kalksand", "klinker", "clinker", "macon", "murerv", "tegelst",
+        "ytong", "poroton", "porenb", "parpaing", "mamposter", "muratura", "metselw", "tugla",
+        "cegl", "blockw", "adobe",
     )),
     ("plasterboard", (
         "plaster", "gyps", "gips", "dryw", "placo", "putz", "cartong", "yeso", "trockenb",

@@ -43,7 +43,7 @@ WallMaterial = Annotated[
     typer.Option(
         metavar="MATERIAL",
         help="Material of walls for which the file gives none.",
-        show_default="plasterboard, concrete where thick",
+        show_default="plasterboard, brick where thick",
     ),
 ]
 SlabMaterial = Annotated[

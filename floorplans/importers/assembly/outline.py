@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPoint, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
 from floorplans.importers.assembly.outline_gaps import gap_links, link_lengths
@@ -80,6 +81,14 @@ class _Network:
         pieces = np.concatenate([np.delete(self._pieces, touched), met])
         return np.array(shapely.get_parts(shapely.polygonize(pieces)), dtype=np.object_)
 
+    def is_edged(self, face: BaseGeometry, others: Lines) -> bool:
+        """Whether all lines in or on a face are edges of other faces too."""
+        wide = face.buffer(_ON_EDGE_M)
+        pieces = self._pieces[self._tree.query(wide, "contains")]
+        middles = shapely.line_interpolate_point(pieces, 0.5, normalized=True)
+        shared = shapely.STRtree(others).query(middles, "dwithin", distance=TOLERANCE_M)[0]
+        return len(np.unique(shared)) == len(pieces)
+
 
 def _noded(lines: Lines) -> Lines:
     """Lines split where they meet."""
@@ -100,9 +109,10 @@ def find_outline(
 ) -> Storey:
     """Find the outline that walls enclose; close gaps where necessary, drop walls outside.
 
-    Gaps are closed by the shortest links between free ends of walls and other walls: those up to
-    the least width that encloses the building, where no greater width up to `max_gap_m` encloses
-    another 2 % of the walls' length. A building that is open wider keeps its gaps.
+    Gaps are closed by the shortest links from free ends and corners of walls to other walls, where
+    that brings walls inside: those up to the least width that encloses the building, where no
+    greater width up to `max_gap_m` encloses another 2 % of the walls' length. A building that is
+    open wider keeps its gaps.
 
     Parameters
     ----------
@@ -219,6 +229,8 @@ def _region(
     polygon = _largest_face(outer, links, given)
     if polygon is None:
         return None
+    if given is None:
+        polygon = _without_recesses(polygon, outer)
     enclosed = _length_inside(lines, polygon) / float(shapely.length(lines).sum())
     return _Region(_simplified(polygon), tuple(_open_sections(polygon, outer.lines)), enclosed)
 
@@ -270,8 +282,7 @@ def _open_sections(region: Polygon, lines: Lines) -> list[Link]:
         for ring in (region.exterior, *region.interiors)
         for a, b in pairwise(ring.coords)
     ]
-    middles = shapely.line_interpolate_point(shapely.linestrings(sides), 0.5, normalized=True)
-    walls = shapely.STRtree(lines).query(middles, "dwithin", distance=TOLERANCE_M)[0]
+    walls = shapely.STRtree(lines).query(_middles(sides), "dwithin", distance=TOLERANCE_M)[0]
     covered = set(walls.tolist())
     return [side for i, side in enumerate(sides) if i not in covered]
 
@@ -293,6 +304,35 @@ def _largest_face(
         return None
     holes = list(largest.interiors) if given is not None else []
     return Polygon(largest.exterior, holes)
+
+
+def _without_recesses(region: Polygon, network: _Network) -> Polygon:
+    """Region without the parts behind a gap that hold no wall of their own, such as a niche.
+
+    A part stays that connects others, such as a corridor that is open at its ends.
+    """
+    gaps = _open_sections(region, network.lines)
+    if not gaps:
+        return region
+    faces = network.faces(np.array(gaps))
+    inner = region.buffer(_ON_EDGE_M)
+    shapely.prepare(inner)
+    faces = faces[shapely.covers(inner, faces)]
+    behind = shapely.STRtree(faces).query(_middles(gaps), "dwithin", distance=TOLERANCE_M)[1]
+    kept = np.ones(len(faces), dtype=np.bool_)
+    for k in dict.fromkeys(behind.tolist()):
+        others = faces[kept & (np.arange(len(faces)) != k)]
+        if network.is_edged(faces.item(k), others):
+            kept[k] = False
+            rest = shapely.coverage_union_all(faces[kept])
+            kept[k] = not isinstance(rest, Polygon)
+    rest = shapely.coverage_union_all(faces[kept])
+    return Polygon(rest.exterior) if isinstance(rest, Polygon) and not kept.all() else region
+
+
+def _middles(sections: Sequence[Link]) -> Lines:
+    lines = shapely.linestrings(sections)
+    return np.array(shapely.line_interpolate_point(lines, 0.5, normalized=True), dtype=np.object_)
 
 
 def _length_inside(lines: Lines, region: Polygon) -> float:

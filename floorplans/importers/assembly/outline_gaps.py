@@ -16,21 +16,26 @@ from floorplans.walls import TOLERANCE_M
 _NEAREST_ENDS = 4
 _NEAREST_WALLS = 8
 _SPREAD = np.cos(np.pi / 4)
+_CORNER = np.sin(np.radians(20.0))
+"""Sine of the least bend between two walls that is a corner."""
 _CLEAR_M = 1e-3
 _CLEAR_FRACTION = 5e-4
 """A link that comes as near to a wall between its ends, in metres or as a fraction of its length,
 runs along it or past its end."""
 _FIRST_RADIUS_M = 0.25
+_BEYOND = 1e-5
+"""Fraction of the longest link that a link straight ahead begins beyond an end."""
 
 Segments = NDArray[np.float64]
 Lines = NDArray[np.object_]
 
 
 def gap_links(lines: Lines, max_gap_m: float) -> Segments:
-    """Links from free ends and between groups of connected walls, without a wall in between.
+    """Links from free ends, corners and between groups of walls, without a wall in between.
 
     From each free end they go to the nearest free ends, to the nearest wall, and straight ahead;
-    from each group of connected walls, such as a pillar, to the nearest walls of other groups.
+    from each corner, as at the open end of a corridor, straight ahead along both walls; from each
+    group of connected walls, such as a pillar, to the nearest walls of other groups.
 
     Parameters
     ----------
@@ -46,11 +51,13 @@ def gap_links(lines: Lines, max_gap_m: float) -> Segments:
     """
     tree = shapely.STRtree(lines)
     owner, ends, ahead = _free_ends(lines, tree)
+    at_corner, corners, along = _corners(lines, tree)
     links = np.concatenate(
         [
             _to_ends(ends, max_gap_m),
             _to_walls(owner, ends, lines, tree, max_gap_m),
             _straight_ahead(owner, ends, ahead * max_gap_m, lines, tree),
+            _straight_ahead(at_corner, corners, along * max_gap_m, lines, tree),
             _between_groups(lines, tree, max_gap_m),
         ]
     )
@@ -69,13 +76,17 @@ def _free_ends(
     lines: Lines, tree: shapely.STRtree
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     """Ends that touch no other wall: the wall's index, the end, and the unit vector ahead."""
-    ends = shapely.get_coordinates(lines).reshape(-1, 2)
-    others = ends.reshape(-1, 2, 2)[:, ::-1].reshape(-1, 2)
+    ends, ahead = _ends(lines)
     touching, _ = tree.query(_points(ends), "dwithin", distance=2 * TOLERANCE_M)
     free = np.flatnonzero(np.bincount(touching, minlength=len(ends)) == 1)
-    ahead = ends[free] - others[free]
-    ahead /= np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
-    return free // 2, ends[free], ahead
+    return free // 2, ends[free], ahead[free]
+
+
+def _ends(lines: Lines) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Both ends of each line and the unit vectors ahead, (2 n, 2)."""
+    ends = shapely.get_coordinates(lines).reshape(-1, 2)
+    ahead = ends - ends.reshape(-1, 2, 2)[:, ::-1].reshape(-1, 2)
+    return ends, ahead / np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
 
 
 def _to_ends(ends: NDArray[np.float64], max_gap_m: float) -> Segments:
@@ -129,18 +140,36 @@ def _straight_ahead(
     lines: Lines,
     tree: shapely.STRtree,
 ) -> Segments:
-    """Link from each free end straight ahead to the first wall."""
-    rays = np.array(shapely.linestrings(np.stack([ends, ends + ahead], axis=1)), dtype=np.object_)
+    """Link from the end of each wall straight ahead to the first wall beyond."""
+    beyond = ends + _BEYOND * ahead
+    rays = np.array(shapely.linestrings(np.stack([beyond, ends + ahead], axis=1)), dtype=np.object_)
     which, wall = tree.query(rays, "intersects")
     other = wall != owner[which]
     which, wall = which[other], wall[other]
-    points = _points(ends)[which]
     shortest = np.array(
-        shapely.shortest_line(points, shapely.intersection(rays[which], lines[wall])),
+        shapely.shortest_line(
+            _points(beyond)[which], shapely.intersection(rays[which], lines[wall])
+        ),
         dtype=np.object_,
     )
     best = _first_of_each(which, shapely.length(shortest))
-    return shapely.get_coordinates(shortest[best]).reshape(-1, 2, 2)
+    links = shapely.get_coordinates(shortest[best]).reshape(-1, 2, 2)
+    links[:, 0] = ends[which[best]]
+    return links
+
+
+def _corners(
+    lines: Lines, tree: shapely.STRtree
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Ends at which two walls meet at an angle: as those of `_free_ends`."""
+    ends, ahead = _ends(lines)
+    touching, wall = tree.query(_points(ends), "dwithin", distance=2 * TOLERANCE_M)
+    is_pair = np.bincount(touching, minlength=len(ends)) == 2
+    other = is_pair[touching] & (wall != touching // 2)
+    end, beside = touching[other], ahead[2 * wall[other]]
+    along = ahead[end]
+    bends = np.abs(along[:, 0] * beside[:, 1] - along[:, 1] * beside[:, 0]) > _CORNER
+    return end[bends] // 2, ends[end[bends]], along[bends]
 
 
 def _between_groups(lines: Lines, tree: shapely.STRtree, max_gap_m: float) -> Segments:

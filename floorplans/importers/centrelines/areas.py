@@ -6,8 +6,8 @@ thickness. Nearly collinear centre lines are then put on one line, and each end 
 the solid to the next centre line it meets: to the corner, or into the T.
 
 What is too thick or too short to be a wall, such as a pillar or a filled shaft, is kept as the ring
-around it. Each side has half the block's width, so that the two sides a ray crosses add up to the
-block.
+around it; a heavy wall, thick but long, is a wall. Each side of a ring has half the block's width,
+so that the two sides a ray crosses add up to the block.
 """
 
 from __future__ import annotations
@@ -25,12 +25,16 @@ from floorplans.importers.centrelines.axes import Axis, on_common_lines
 from floorplans.importers.draft import RawWall
 
 MAX_THICKNESS_M = 1.0
-"""Largest thickness of a wall; what is thicker is a block [m]."""
+"""Largest thickness of a wall; what is thicker is a block, unless it is long [m]."""
+
+MAX_HEAVY_M = 2.5
+"""Largest thickness of a long wall, as of heavy masonry [m]."""
 
 SQUATNESS = 0.5
 """A free-standing piece wider than this fraction of its length is a pillar."""
 
 _PARALLEL = np.cos(np.radians(12.0))
+_LONG = 4.0  # area over squared width from which a thick part is a heavy wall
 _FACING_FRACTION = 0.6  # of the thickness, on which the two sides of a wall must face each other
 _BEND = np.sin(np.radians(1.0))
 _TILES = 8.0  # times the reach: side of a tile of the solid
@@ -61,13 +65,15 @@ def walls_of_area(
     openings = shapely.Polygon() if fillings is None else fillings
     solid = _polygons(_closed(area.union(openings), tolerance_m).simplify(tolerance_m / 2))
     whole = shapely.union_all(solid)
-    blocks = _blocks(whole)
+    blocks, thickest_m = _blocks(whole)
     thin = [
         part
         for part in _polygons(whole.difference(shapely.union_all(blocks).buffer(1e-6)))
         if part.area > tolerance_m**2
     ]
-    found = [_with_filling_flag(axis, openings) for part in thin for axis in _axes(part)]
+    found = [
+        _with_filling_flag(axis, openings) for part in thin for axis in _axes(part, thickest_m)
+    ]
     axes = on_common_lines(found, whole)
     rings = [side for block in blocks for side in _ring_walls(block)]
     reach = [RawWall(axis.start, axis.end, axis.thickness_m) for axis in axes]
@@ -91,12 +97,21 @@ def _polygons(geometry: BaseGeometry) -> list[Polygon]:
     return [part for part in parts if isinstance(part, Polygon) and part.area > 0]
 
 
-def _blocks(whole: BaseGeometry) -> list[Polygon]:
+def _blocks(whole: BaseGeometry) -> tuple[list[Polygon], float]:
+    """Parts that are kept as rings, and the thickness of the thickest wall in the others [m]."""
     half = MAX_THICKNESS_M / 2
     core = whole.buffer(-half, join_style="mitre").buffer(half, join_style="mitre")
     thick = _polygons(core.intersection(whole)) if not core.is_empty else []
-    blocks = [part for part in thick if part.area > half**2]
-    return blocks + [part for part in _polygons(whole) if _is_pillar(part)]
+    thick = [part for part in thick if part.area > half**2]
+    widths_m = [2 * shapely.maximum_inscribed_circle(part).length for part in thick]
+    heavy = [
+        width_m <= MAX_HEAVY_M and part.area >= _LONG * width_m**2
+        for part, width_m in zip(thick, widths_m, strict=True)
+    ]
+    blocks = [part for part, is_wall in zip(thick, heavy, strict=True) if not is_wall]
+    walls_m = [w for w, is_wall in zip(widths_m, heavy, strict=True) if is_wall]
+    blocks += [part for part in _polygons(whole) if _is_pillar(part)]
+    return blocks, max([MAX_THICKNESS_M, *(1.02 * width_m for width_m in walls_m)])
 
 
 def _is_pillar(part: Polygon) -> bool:
@@ -138,17 +153,17 @@ def _edges(part: Polygon) -> _Edges:
     return _Edges(start[real], step[real] / length[real, None], length[real])
 
 
-def _axes(part: Polygon) -> list[Axis]:
-    """Centre lines of all pairs of sides that face each other."""
+def _axes(part: Polygon, thickest_m: float) -> list[Axis]:
+    """Centre lines of all pairs of sides that face each other across up to `thickest_m`."""
     edges = _edges(part)
     ends = np.stack([edges.start, edges.start + edges.along * edges.length[:, None]], axis=1)
     lines = np.array(shapely.linestrings(ends), dtype=np.object_)
-    pairs = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=MAX_THICKNESS_M)
+    pairs = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=thickest_m)
     near = pairs[:, pairs[0] < pairs[1]].T
     opposed = np.sum(edges.along[near[:, 0]] * edges.along[near[:, 1]], axis=1) < -_PARALLEL
     inside = part.buffer(1e-6)
     shapely.prepare(inside)
-    found = [_axis_between(edges, int(i), int(j)) for i, j in near[opposed]]
+    found = [_axis_between(edges, int(i), int(j), thickest_m) for i, j in near[opposed]]
     return [a for a in found if a is not None and inside.covers(LineString([a.start, a.end]))]
 
 
@@ -158,7 +173,7 @@ def _with_filling_flag(axis: Axis, fillings: BaseGeometry) -> Axis:
     return replace(axis, is_filling=bool(fillings.covers(middle)))
 
 
-def _axis_between(edges: _Edges, i: int, j: int) -> Axis | None:
+def _axis_between(edges: _Edges, i: int, j: int, thickest_m: float) -> Axis | None:
     """Centre line of the wall between two sides; None if they do not face each other."""
     along = edges.along[i] - edges.along[j]
     along /= np.hypot(*along)
@@ -172,7 +187,7 @@ def _axis_between(edges: _Edges, i: int, j: int) -> Axis | None:
         return None
     near, far = (np.interp([low, high], np.sort(s[k]), t[k][np.argsort(s[k])]) for k in (0, 1))
     thickness_m = float(np.mean(far - near))
-    if not 1e-3 < thickness_m <= MAX_THICKNESS_M or high - low < _FACING_FRACTION * thickness_m:
+    if not 1e-3 < thickness_m <= thickest_m or high - low < _FACING_FRACTION * thickness_m:
         return None
     middle = (near + far) / 2
     start, end = (along * p + across * q for p, q in zip((low, high), middle, strict=True))

@@ -22,7 +22,7 @@ from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
 from floorplans.importers.centrelines.align import aligned_to_main_directions, along_walls
-from floorplans.importers.centrelines.areas import MAX_THICKNESS_M, walls_of_area
+from floorplans.importers.centrelines.areas import MAX_HEAVY_M, MAX_THICKNESS_M, walls_of_area
 from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
 from floorplans.importers.centrelines.parallel_lines import MIN_THICKNESS_M, strips_of_lines
@@ -115,6 +115,7 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
         notes=(
             f"unit {unit}, as {stated_by}",
             *([missing_blocks(content)] if content.missing else []),
+            *_floor_fills(metric, layers),
             *unmatched(options.layers, content.n_objects),
         ),
         original=layers.original(metric),
@@ -209,9 +210,14 @@ def _faces(content: Content, layers: Layers) -> NDArray[np.float64]:
 
 def _segments(curves: Sequence[Curve]) -> NDArray[np.float64]:
     """Straight pieces of curves, (n, 2, 2)."""
-    chains = [np.array([*curve.points, *curve.points[: curve.closed]]) for curve in curves]
+    chains = [_corners(curve) for curve in curves]
     pieces = [np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains]
     return np.concatenate([np.empty((0, 2, 2)), *pieces])
+
+
+def _corners(curve: Curve) -> NDArray[np.float64]:
+    """Corners of a chain, of a closed one with the first again at its end, (n, 2)."""
+    return np.array([*curve.points, *curve.points[: curve.closed]])
 
 
 def _panes(content: Content, layers: Layers) -> list[LineString]:
@@ -272,9 +278,9 @@ def _thin_bodies(chains: Sequence[Curve]) -> tuple[list[Polygon], NDArray[np.flo
     area: list[Polygon] = []
     segments: list[NDArray[np.float64]] = []
     for chain in chains:
-        points = np.array([*chain.points, *chain.points[: chain.closed]])
+        points = _corners(chain)
         body = _body(chain, points)
-        if body is not None and _is_thin(body):
+        if body is not None and (_is_heavy(body) if chain.filled else _is_thin(body)):
             area += [part for part in shapely.get_parts(body) if isinstance(part, Polygon)]
         elif not chain.filled:
             segments.append(np.stack([points[:-1], points[1:]], axis=1))
@@ -297,6 +303,28 @@ def _body(chain: Curve, points: NDArray[np.float64]) -> BaseGeometry | None:
 def _is_thin(body: BaseGeometry) -> bool:
     """Whether an area is thin enough for a wall, and no room or floor."""
     return body.area > 0 and body.buffer(-MAX_THICKNESS_M / 2).is_empty
+
+
+def _is_heavy(fill: BaseGeometry) -> bool:
+    """Whether a filled area may be masonry, as most of it is no wider than a heavy wall."""
+    half = MAX_HEAVY_M / 2
+    wide = fill.buffer(-half, join_style="mitre").buffer(half, join_style="mitre")
+    return fill.area > 0 and wide.intersection(fill).area < fill.area / 2
+
+
+def _floor_fills(content: Content, layers: Layers) -> Iterator[str]:
+    """Yield a sentence for each layer of walls with fills that are too wide for masonry."""
+    for layer in layers.of("wall"):
+        fills = (_body(c, _corners(c)) for c in content.curves[layer] if c.filled)
+        wide = [body for body in fills if body is not None and not _is_heavy(body)]
+        if wide:
+            largest = max(wide, key=lambda body: body.area)
+            x, y = largest.representative_point().coords[0]
+            yield (
+                f"layer {layer}: {len(wide)} filled area{'s' * (len(wide) > 1)} wider than "
+                f"{MAX_HEAVY_M:g} m left out, taken for floors; the largest has "
+                f"{largest.area:.3g} m² around ({x:.2f}, {y:.2f}) of the drawing, in metres"
+            )
 
 
 def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> list[RawOpening]:

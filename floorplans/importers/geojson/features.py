@@ -15,7 +15,12 @@ from typing import Any, Literal, cast, get_args
 
 from floorplans.importers.draft import ImportOptions
 from floorplans.importers.layer_names import is_horizontal_opening, meaning_in, meaning_of
-from floorplans.importers.material_names import material_named, words_of
+from floorplans.importers.material_names import (
+    CAVITY,
+    layer_material_named,
+    matches,
+    words_of,
+)
 from floorplans.materials import MATERIALS
 
 Kind = Literal["wall", "door", "window", "passage", "room", "outline", "level", "ignore"]
@@ -43,6 +48,19 @@ WORDS: Mapping[str, Kind] = {
     "section": "ignore", "venue": "ignore",
 }  # fmt: skip
 """Last word of a name (building_outline, exterior-wall) -> what it is."""
+
+_ROOM_WORDS = (
+    "bedroom", "bathroom", "restroom", "kitchen", "toilet", "lobby", "raum ", "raume ", "*raum ",
+    "*raume ", "zimmer ", "*zimmer ", "flur ", "*flur ", "diele ", "kuche ", "*kuche ", "kueche ",
+    "bad ", "buro ", "buero ", "halle ", "*halle ", "piece ", "pieces ", "chambre", "couloir",
+    "salle ", "salles ", "cuisine ", "bureau", "habitacion", "pasillo", "cuarto", "dormitorio",
+    "cocina", "bano ", "oficina", "sala ", "salon ", "stanza", "stanze ", "corridoio", "cucina",
+    "bagno", "ufficio", "quarto", "corredor", "cozinha", "escritorio", "kamer ", "*kamer ", "gang ",
+    "keuken", "kantoor", "rum ", "korridor", "kok ", "kontor", "rom ", "kjokken", "huone",
+    "keittio", "kaytava", "pokoj", "kuchnia", "korytarz", "mistnost", "chodba", "oda ", "koridor",
+    "mutfak", "комнат", "коридор", "кухн",
+)  # fmt: skip
+"""Words for rooms, as in `floorplans.importers.material_names`."""
 
 LEVEL_KEYS = ("level", "level_id", "levelId", "level_name", "floor", "storey", "building_level")
 
@@ -149,6 +167,8 @@ def _kind_of(word: str) -> Kind | None:
     if last and last[0] in WORDS:
         return WORDS[last[0]]
     kind = meaning_of(word).kind
+    if kind in (None, "ignore") and matches(words_of(word), _ROOM_WORDS):
+        return "room"
     return None if kind == "ignore" else kind
 
 
@@ -158,7 +178,8 @@ def _texts(value: object) -> list[str]:
 
 def _material(properties: Json) -> str | None:
     name = str(properties.get("material", "")).strip().lower()
-    return name if name in MATERIALS else material_named(name)
+    material = name if name in MATERIALS else layer_material_named(name)
+    return None if material == CAVITY else material
 
 
 def _level_names(text: str) -> list[str]:

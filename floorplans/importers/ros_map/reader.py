@@ -86,7 +86,7 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
     walls = walls_of_picture(sorted_.walls, tolerance_px)
     if not walls:
         raise PlanError("no line of pixels is long enough for a wall; is the scale right?")
-    _check_noise(sorted_, walls, pixel_m)
+    _check_noise(grid, sorted_, walls)
     rings = [side for shape in sorted_.obstacles for side in _ring(shape, min(tolerance_px, 1.0))]
     region = known_region(grid.free, sorted_.solid, pixel_m)
     openings = [] if region is None else list(openings_in_border(region, walls, pixel_m))
@@ -109,11 +109,12 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
     )
 
 
-def _check_noise(sorted_: _Sorted, walls: list[RawWall], pixel_m: float) -> None:
-    """Reject a picture of many small pieces and hardly any wall."""
+def _check_noise(grid: OccupancyGrid, sorted_: _Sorted, walls: list[RawWall]) -> None:
+    """Reject a picture of many small pieces that hold most of its occupied pixels."""
     n_pieces = sorted_.n_specks + len(sorted_.obstacles)
-    length_m = sum(dist(wall.start, wall.end) for wall in walls) * pixel_m
-    if n_pieces > _MANY_PIECES and n_pieces > _PIECES_PER_M * length_m:
+    length_m = sum(dist(wall.start, wall.end) for wall in walls) * grid.metadata.resolution_m
+    loose = np.count_nonzero(grid.occupied & ~sorted_.walls) > grid.occupied.sum() / 2
+    if n_pieces > _MANY_PIECES and n_pieces > _PIECES_PER_M * length_m and loose:
         raise PlanError(
             f"the map shows {n_pieces} isolated small pieces and only {length_m:.3g} m of walls: "
             "noise, or another scale; clean the picture, or give the side of a pixel"

@@ -183,6 +183,29 @@ def test_gaps_in_the_outline_are_closed_and_reported(gap_m: float):
     assert {closed.at, closed.to} == {(6, 0), (6 + gap_m, 0)}
 
 
+@pytest.mark.parametrize("west_is_open", [True, False])
+@pytest.mark.parametrize("offset_m", [0.0, 0.7])
+def test_a_corridor_that_is_open_at_its_ends_is_closed_there(west_is_open: bool, offset_m: float):
+    rooms = [*ring(0, 0, 7, 4), *ring(7, 0, 15, 4), *ring(0, 6, 9, 11), *ring(9, 6, 15, 11)]
+    if offset_m:
+        rooms += ring(15, 6, 15 + offset_m, 11)
+    west = [] if west_is_open else [RawWall((0, 4), (0, 6), 0.3)]
+    result = made(Draft("x", (*rooms, *west)))
+    assert result.plan.outline.area == pytest.approx(15 * 11 + offset_m * 5)
+    closed = [change for change in result.changes if change.kind == "closed"]
+    assert len(closed) == 1 + west_is_open
+    assert not any(change.kind == "dropped" for change in result.changes)
+
+
+def test_a_niche_in_the_front_stays_outside_while_a_gap_is_closed():
+    front = [(0, 0), (4, 0), (4, 2), (7, 2), (7, 0), (12, 0), (12, 8), (9, 8)]
+    back = [(6, 8), (0, 8), (0, 0)]
+    walls = [RawWall(a, b, 0.2) for line in (front, back) for a, b in pairwise(line)]
+    result = made(Draft("x", tuple(walls)))
+    assert result.plan.outline.area == pytest.approx(12 * 8 - 3 * 2)
+    assert [c.kind for c in result.changes if c.kind == "closed"] == ["closed"]
+
+
 def test_gaps_are_closed_past_a_pillar():
     pillar = [replace(wall, thickness_m=0.2) for wall in ring(6, -0.2, 6.4, 0.2)]
     walls = [*ring(0, 0, 12, 8)[1:], RawWall((0, 0), (4.5, 0)), RawWall((8, 0), (12, 0)), *pillar]

@@ -186,6 +186,25 @@ def test_a_hatch_leaves_its_holes_free(tmp_path: Path):
     assert sorted(round(w.thickness_m, 3) for w in plan.walls) == [0.2, 0.3, 0.3, 0.3, 0.3]
 
 
+def test_a_hatch_with_a_thick_part_is_masonry_and_one_of_a_floor_is_reported(tmp_path: Path):
+    doc = draw.new()
+    space = doc.modelspace()
+    tower = [(0.6, 0.6), (13.4, 0.6), (13.4, 8.4), (2.2, 8.4), (2.2, 7.1), (0.6, 7.1)]
+    floor = draw.rectangle(20, 0, 26, 5)
+    for rings in ([draw.rectangle(0, 0, 14, 9), tower], [floor]):
+        hatch = space.add_hatch(dxfattribs={"layer": "A-WALL-MASN"})
+        for ring in rings:
+            hatch.paths.add_polyline_path([(1000 * x, 1000 * y) for x, y in ring], is_closed=True)
+    result = imported(doc, tmp_path)
+    thick = [round(w.thickness_m, 2) for w in result.plan.walls if w.thickness_m > 0.55]
+    assert thick == [0.6] * 4
+    assert {wall.material for wall in result.plan.walls} == {"brick"}
+    assert result.plan.outline.area == pytest.approx(13.4 * 8.4, rel=0.05)
+    (note,) = (line for line in result.report if "taken for floors" in line)
+    assert "30 m²" in note
+    assert "(23.00, 2.50)" in note
+
+
 @pytest.mark.parametrize("scale", [1.0, 0.5])
 def test_a_polyline_with_a_width_is_a_wall_as_thick(tmp_path: Path, scale: float):
     doc = draw.new()

@@ -158,6 +158,11 @@ def test_materials_are_known_in_other_words(imported) -> None:
 ROOMS = [box(0, 0, 4, 6), box(4, 0, 10, 3), box(4, 3, 10, 6)]
 
 
+@pytest.mark.parametrize("kind", ["Wohnzimmer", "Büro", "pièce", "dormitorio", "stanza", "kitchen"])
+def test_rooms_are_known_in_other_languages(kind: str) -> None:
+    assert classify(feature(OUTER, type=kind), ImportOptions()).kind == "room"
+
+
 def test_rooms_that_touch_have_walls_around_and_between(imported) -> None:
     plan = imported(collection(*(feature(room, indoor="room") for room in ROOMS), crs=None))
     assert lines_of(plan.walls) == [

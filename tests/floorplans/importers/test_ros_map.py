@@ -107,6 +107,18 @@ def test_noise_is_left_out_and_small_gaps_closed(tmp_path) -> None:
     assert sum(w.length_m for w in plan.walls if w.length_m > 1.0) == pytest.approx(40.0, rel=0.03)
 
 
+def test_single_pixels_all_over_a_map_are_left_out_and_not_the_map(tmp_path) -> None:
+    values = room_values()
+    rng = np.random.default_rng(8)
+    free = np.argwhere(values == 254)
+    values[tuple(free[rng.choice(len(free), 120, replace=False)].T)] = 0
+    result = import_plan(write_map(tmp_path, values))
+    assert result.plan.outline.area == pytest.approx(
+        import_plan(write_map(tmp_path, room_values(), "clean")).plan.outline.area, rel=0.01
+    )
+    assert any(use.name == "specks" and use.n_objects > 50 for use in result.layers)
+
+
 def test_modes_thresholds_and_negate_say_which_pixels_are_walls(tmp_path) -> None:
     values = np.array([[0, 80, 120, 205, 254]], dtype=np.uint8)
 

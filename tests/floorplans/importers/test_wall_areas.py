@@ -38,6 +38,20 @@ def test_a_pillar_is_a_ring_of_half_its_width() -> None:
     )
 
 
+@pytest.mark.parametrize("angle", [0, 31])
+def test_a_heavy_wall_is_a_wall_and_a_thick_block_a_ring(angle: float) -> None:
+    storey = box(0, 0, 22, 14) - box(1.6, 1.6, 20.4, 12.4) | box(9, 1, 9.6, 13)
+    block = box(14, 6, 15.8, 7.8)
+    area = affinity.rotate(storey | block, angle, origin=(0, 0))
+    walls = walls_of_area(area, 0.02)
+    assert sorted(round(wall.thickness_m, 2) for wall in walls) == [0.5] * 4 + [0.6] + [1.6] * 4
+    faces = shapely.polygonize([LineString([w.start, w.end]) for w in walls])
+    sizes = sorted(face.area for face in faces.geoms)
+    assert sizes[0] == pytest.approx(1.8**2, rel=0.01)
+    outer = shapely.union_all([LineString([w.start, w.end]) for w in walls]).convex_hull
+    assert outer.area == pytest.approx(20.4 * 12.4, rel=0.01)
+
+
 def test_a_bent_wall_becomes_chords_within_its_body() -> None:
     arc = Point(0, 0).buffer(8, quad_segs=24) - Point(0, 0).buffer(7.7, quad_segs=24)
     walls = walls_of_area(arc & box(0, 0, 9, 9), 0.02)
