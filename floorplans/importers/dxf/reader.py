@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LinearRing, LineString, Point, Polygon
+from shapely.geometry import LinearRing, LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
@@ -28,15 +28,20 @@ from floorplans.importers.centrelines.gaps import fill_gaps
 from floorplans.importers.centrelines.parallel_lines import MIN_THICKNESS_M, strips_of_lines
 from floorplans.importers.centrelines.split_by_material import by_material, without_openings
 from floorplans.importers.centrelines.spurious import without_spurious_walls
-from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
-from floorplans.importers.dxf.curves import Curve, Swing, scaled_curve
+from floorplans.importers.dxf.curves import Curve, scaled_curve
 from floorplans.importers.dxf.drawing import Content, Symbol, load_document, read_content
+from floorplans.importers.dxf.glazing import (
+    CLOSE_M,
+    MIN_SINGLE_M,
+    PAIR_M,
+    glass_walls,
+    loose_openings,
+)
 from floorplans.importers.dxf.layers import Layers, layers_of, missing_blocks
 from floorplans.importers.dxf.openings import (
     as_windows_outside,
     door_swings,
-    loose_lines,
     opening_of_swing,
     openings_of_symbol,
 )
@@ -51,13 +56,7 @@ CHORD_M = 0.02
 """Largest deviation of chords from an arc [m]."""
 MAX_LINES = 20_000
 """Most lines on the layers of walls of a storey."""
-_PAIR_M = 0.6
-"""Largest distance between the two lines of a wall [m]."""
-_CLOSE_M = 0.02
-_IN_WALL_M = 0.05
 _AT_FACE_M = 0.12
-_CROSSING_M = 1.0
-_MIN_SINGLE_M = 0.3
 _INLIER_PERCENTILES = (0.5, 99.5)
 
 _INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 14: "dm"}
@@ -187,17 +186,17 @@ def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[Raw
     openings = join_leaves(along_walls(openings, _faces(content, layers)))
     filled = list(fill_gaps(area, openings))
     area = shapely.union_all([area, *filled])
-    loose, glass = _loose_openings(content, layers, area)
+    loose, bent, glass = loose_openings(content, layers, area)
     filled += fill_gaps(area, loose)
     area = shapely.union_all([area, *filled])
-    openings = as_windows_outside([*openings, *loose], area)
+    openings = as_windows_outside([*openings, *loose, *bent], area)
     solid = without_openings(bodies.area, openings)
-    walls = walls_of_area(area, _CLOSE_M, shapely.union_all(filled)) if not area.is_empty else []
+    walls = walls_of_area(area, CLOSE_M, shapely.union_all(filled)) if not area.is_empty else []
     walls = aligned_to_main_directions(without_spurious_walls(walls, area))
     return [
         *(piece for wall in walls for piece in by_material(wall, solid)),
         *_single_walls(bodies, area),
-        *_glass_walls(glass, area),
+        *glass_walls(glass, area),
     ], openings
 
 
@@ -241,7 +240,7 @@ def _bodies(content: Content, layers: Layers) -> _Bodies:
     area: dict[Material, BaseGeometry] = {}
     singles: list[tuple[LineString, Material]] = []
     for material, (closed, segments) in by_material_.items():
-        walls = strips_of_lines(segments, _PAIR_M)
+        walls = strips_of_lines(segments, PAIR_M)
         strips = [s for s in walls.area if s.difference(beside).area > s.area / 2]
         area[material] = shapely.union_all([*closed, *strips])
         singles += [(LineString(ends), material) for ends in walls.singles]
@@ -268,7 +267,7 @@ def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:
     for (line, material), parts in zip(bodies.singles, beside, strict=bool(len(lines))):
         free = line.difference(shapely.union_all(wide[parts])) if len(parts) else line
         for part in shapely.get_parts(free):
-            if part.length > min(_MIN_SINGLE_M, line.length / 2):
+            if part.length > min(MIN_SINGLE_M, line.length / 2):
                 (x0, y0), *_, (x1, y1) = part.coords
                 yield RawWall((x0, y0), (x1, y1), None, material)
 
@@ -331,64 +330,3 @@ def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> l
     """Openings of door leaves drawn without a block."""
     curves = [curve for layer in layers.of("door") for curve in content.curves[layer]]
     return [opening_of_swing(swing, curves, ground) for swing in door_swings(curves)]
-
-
-def _loose_openings(
-    content: Content, layers: Layers, area: BaseGeometry
-) -> tuple[list[RawOpening], list[LineString]]:
-    """Openings of lines that lie in a wall or its gap, and the other lines of windows and doors."""
-    openings: list[RawOpening] = []
-    glass: list[LineString] = []
-    for layer in layers.of("passage"):
-        found = [cluster.opening for cluster in loose_lines(content.curves[layer], "door")]
-        openings += [o for o in found if o is not None and _is_in_wall(o, area)]
-    for layer in (*layers.of("window"), *layers.of("door")):
-        curves = content.curves[layer]
-        leaves = door_swings(curves)
-        others = [curve for curve in curves if curve.swing not in leaves]
-        for cluster in loose_lines(others, "window"):
-            if _has_leaf(cluster.lines, leaves):
-                continue
-            if cluster.opening is not None and _is_in_wall(cluster.opening, area):
-                openings.append(cluster.opening)
-            else:
-                glass += cluster.lines
-    return openings, glass
-
-
-def _has_leaf(lines: Sequence[LineString], leaves: Sequence[Swing]) -> bool:
-    """Whether lines belong to a door's leaf."""
-    joined = shapely.union_all(list(lines))
-    return any(Point(p).distance(joined) < _IN_WALL_M for s in leaves for p in (s.hinge, *s.ends))
-
-
-def _is_in_wall(opening: RawOpening, area: BaseGeometry) -> bool:
-    """Whether an opening lies in a wall, or in a gap of one."""
-    in_wall = Point(opening.centre).distance(area) < _IN_WALL_M
-    return in_wall or bool(fill_gaps(area, [opening]))
-
-
-def _outside(line: LineString, area: BaseGeometry) -> BaseGeometry:
-    """Line without the sections inside an area, except short crossings."""
-    inside = shapely.get_parts(line.intersection(area))
-    along = [part for part in inside if part.length > min(_CROSSING_M, 0.9 * line.length)]
-    return line.difference(shapely.union_all(along).buffer(_IN_WALL_M / 10))
-
-
-def _glass_walls(lines: Sequence[LineString], area: BaseGeometry) -> list[RawWall]:
-    """Walls of glass on single lines, and between two lines that face each other.
-
-    Lines inside other walls or on their faces are ignored; a pane may cross walls.
-    """
-    wide = area.buffer(_IN_WALL_M)
-    parts = shapely.get_parts([_outside(line, wide) for line in lines])
-    chains = [shapely.get_coordinates(part) for part in parts if part.length > _MIN_SINGLE_M]
-    if not chains:
-        return []
-    walls = strips_of_lines(
-        np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in chains]), _PAIR_M
-    )
-    found = walls_of_area(shapely.union_all(list(walls.area)), _CLOSE_M) if walls.area else []
-    ends = [(wall.start, wall.end) for wall in found]
-    ends += [((x0, y0), (x1, y1)) for (x0, y0), (x1, y1) in walls.singles.tolist()]
-    return [RawWall(a, b, WINDOW_THICKNESS_M, WINDOW_MATERIAL) for a, b in ends]

@@ -175,6 +175,19 @@ def test_curved_glazing_beside_curved_walls_loses_nothing(tmp_path: Path):
     assert result.plan.outline.area == pytest.approx(pi * 5.2**2, rel=0.03)
 
 
+def test_windows_drawn_over_a_curved_wall_lose_no_glass(tmp_path: Path):
+    doc = draw.new()
+    space = doc.modelspace()
+    for radius in (7000, 7300):
+        space.add_circle((0, 0), radius, dxfattribs={"layer": "WALL"})
+    for radius in (7000, 7150, 7300):
+        space.add_arc((0, 0), radius, 20, 110, dxfattribs={"layer": "WINDOW"})
+    plan = imported(doc, tmp_path).plan
+    glazed_m = sum(o.width_m for _, o in openings(plan) if o.kind == "window")
+    assert glazed_m == pytest.approx(radians(90) * 7.15, rel=0.03)
+    assert plan.outline.area == pytest.approx(pi * 7.15**2, rel=0.02)
+
+
 def test_a_hatch_leaves_its_holes_free(tmp_path: Path):
     doc = draw.new()
     hatch = doc.modelspace().add_hatch(dxfattribs={"layer": "WALL"})
