@@ -1,10 +1,12 @@
-"""Announcing that a map, or the paths to a point, will take long."""
+"""Announcing that maps, or the paths to points, will take long."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from raytrace import CostEstimate, Grid, Scene, TraceConfig, Transmitter, estimate_cost
+from raytrace.arrays import Floats
 
 UNITS_S = {"years": 3.156e7, "days": 86400.0, "hours": 3600.0, "minutes": 60.0}
 
@@ -15,7 +17,7 @@ LEAST_CELLS = 100
 """Larger cells are proposed where as many remain."""
 
 LONG_PATHS_S = 10.0
-"""Paths to a point that take longer are announced [s]: they show no progress."""
+"""Paths to points that take longer are announced [s]: they show little progress."""
 
 CELLS_OF_BEAMS = 1000
 """Beams are grown for one receiver too: as much work as the paths to about so many cells."""
@@ -49,22 +51,28 @@ def announcement(
     config: TraceConfig,
     threads: int | None = None,
     max_memory_bytes: int | None = None,
+    n_transmitters: int = 1,
 ) -> str | None:
     """Return what a map will take, in words, if that is long; otherwise None.
 
-    `max_memory_bytes` is the most memory that the estimate may take itself.
+    An estimate that had to be extrapolated is always announced: it is too rough to keep silent.
+    `max_memory_bytes` is the most memory that the estimate may take itself. Of several transmitters
+    each is taken to cost as much as the given one.
 
     Raises
     ------
     SceneError
         Where the transmitter is not inside the building.
     """
-    if work(scene, grid, config) < MAX_SILENT_WORK:
+    if n_transmitters * work(scene, grid, config) < MAX_SILENT_WORK:
         return None
     cost = estimate_cost(
         scene, transmitter, grid, config, threads=threads, max_memory_bytes=max_memory_bytes
     )
-    return sentence(cost, grid) if cost.seconds > LONG_S else None
+    cost = _of_several(cost, n_transmitters)
+    if cost.seconds <= LONG_S and not cost.is_extrapolated:
+        return None
+    return sentence(cost, grid, n_transmitters)
 
 
 def paths_announcement(
@@ -83,35 +91,80 @@ def paths_announcement(
     SceneError
         Where the transmitter is not inside the building.
     """
-    x, y, z = receiver
-    grid = Grid(np.array([x]), np.array([y]), z, 1.0)
-    if work(scene, grid, config) * CELLS_OF_BEAMS < MAX_SILENT_WORK:
+    return points_announcement(
+        scene, transmitter, np.array([receiver]), config, 1, max_memory_bytes
+    )
+
+
+def points_announcement(
+    scene: Scene,
+    transmitter: Transmitter,
+    points: Floats,
+    config: TraceConfig,
+    threads: int | None = None,
+    max_memory_bytes: int | None = None,
+    n_transmitters: int = 1,
+) -> str | None:
+    """Return what the paths to points (n, 3) [m] will take, as `paths_announcement`.
+
+    They are estimated for a grid of about as many points in the same part of the building.
+    """
+    grid = _grid_like(points)
+    if n_transmitters * work(scene, grid, config) * CELLS_OF_BEAMS < MAX_SILENT_WORK:
         return None
     cost = estimate_cost(
-        scene, transmitter, grid, config, threads=1, max_memory_bytes=max_memory_bytes
+        scene, transmitter, grid, config, threads=threads, max_memory_bytes=max_memory_bytes
     )
+    cost = _of_several(cost, n_transmitters)
     if cost.seconds <= LONG_PATHS_S and not cost.is_extrapolated:
         return None
     memory = _memory(cost.memory_bytes + cost.paths * BYTES_A_PATH * (config.max_reflections + 3))
     return (
-        f"estimate: {_count(cost.paths)} paths, {_roughly(cost)}{_duration(cost.seconds)} and "
-        f"{memory} of memory; fewer reflections reduce all three"
+        f"estimate: {_count(cost.paths)} paths{_from(n_transmitters)}, "
+        f"{_roughly(cost, memory)}; fewer reflections reduce all three"
     )
 
 
-def sentence(cost: CostEstimate, grid: Grid) -> str:
+def sentence(cost: CostEstimate, grid: Grid, n_transmitters: int = 1) -> str:
     """Return an estimate in words."""
     cells = grid.x.size * grid.y.size
     return (
-        f"estimate: {_count(cost.paths)} paths to {_count(cells)} cells, "
-        f"{_roughly(cost)}{_duration(cost.seconds)} and {_memory(cost.memory_bytes)} of memory; "
+        f"estimate: {_count(cost.paths)} paths to {_count(cells)} cells{_from(n_transmitters)}, "
+        f"{_roughly(cost, _memory(cost.memory_bytes))}; "
         "larger cells, fewer reflections, --min-power or --max-paths reduce them"
         f"{_affordable(cost, grid)}"
     )
 
 
-def _roughly(cost: CostEstimate) -> str:
-    return "on the order of " if cost.is_extrapolated else "about "
+def _grid_like(points: Floats) -> Grid:
+    """Return a grid over the bounds of points, of about as many cells."""
+    side = math.ceil(math.sqrt(len(points)))
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y = (np.unique(np.linspace(low[axis], high[axis], side)) for axis in (0, 1))
+    return Grid(x, y, float(np.median(points[:, 2])), 1.0)
+
+
+def _of_several(cost: CostEstimate, n: int) -> CostEstimate:
+    """Return the cost of n transmitters of the same cost."""
+    return replace(
+        cost,
+        paths=n * cost.paths,
+        seconds=n * cost.seconds,
+        seconds_for_beams=n * cost.seconds_for_beams,
+        seconds_of_lower_orders=tuple(n * seconds for seconds in cost.seconds_of_lower_orders),
+    )
+
+
+def _from(n_transmitters: int) -> str:
+    return f" from {n_transmitters} transmitters" if n_transmitters > 1 else ""
+
+
+def _roughly(cost: CostEstimate, memory: str) -> str:
+    """Return time and memory in words, and how far they may be off."""
+    words = f"{_duration(cost.seconds)} and {memory} of memory"
+    if not cost.is_extrapolated:
+        return f"about {words}"
+    return f"on the order of {words} (extrapolated from fewer reflections: may be far off)"
 
 
 def _memory(n_bytes: float) -> str:

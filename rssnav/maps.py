@@ -88,6 +88,27 @@ class MapRequest:
                 return f"made {what}"
         return None
 
+    def announce(
+        self,
+        scene: Scene,
+        notice: Notice,
+        threads: int | None,
+        max_memory_bytes: int | None,
+        n_transmitters: int = 1,
+    ) -> None:
+        """Give notice if the map will take long, or those of so many transmitters."""
+        words = announcement(
+            scene,
+            self.transmitter,
+            self.grid,
+            self.config,
+            threads,
+            max_memory_bytes,
+            n_transmitters,
+        )
+        if words is not None:
+            notice(words)
+
     def compute(
         self,
         scene: Scene | None = None,
@@ -101,9 +122,7 @@ class MapRequest:
         made_with = scene, self.transmitter, self.grid, self.config
         try:
             if notice is not None:
-                words = announcement(*made_with, threads, max_memory_bytes)
-                if words is not None:
-                    notice(words)
+                self.announce(scene, notice, threads, max_memory_bytes)
             radio_map = compute_radio_map(
                 *made_with,
                 receive_antenna=self.receive_antenna,

@@ -103,7 +103,10 @@ def make_transmitter_maps(
     for number, (name, request) in enumerate(wanted.requests.items()):
         part = part_of(progress, number, len(transmitters))
         try:
-            maps[name] = request.compute(prepared.scene, threads, part, notice, max_memory_bytes)
+            if notice is not None and number == 0:  # once for all
+                made_with = prepared.scene, notice, threads, max_memory_bytes
+                request.announce(*made_with, len(transmitters))
+            maps[name] = request.compute(prepared.scene, threads, part, None, max_memory_bytes)
         except SceneError as error:
             raise SceneError(f"transmitter {name!r}: {error}") from error
     found = TransmitterMaps(maps)

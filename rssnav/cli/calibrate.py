@@ -41,6 +41,7 @@ from rssnav.cli.survey_options import (
 from rssnav.measurements.calibrate import Calibration, Change, calibrate
 from rssnav.measurements.calibration_page import calibration_page
 from rssnav.measurements.hold_out import SQUARE_M
+from rssnav.measurements.traced import survey_announcement
 from rssnav.messages import printable
 from rssnav.scenes import scene_of
 
@@ -110,10 +111,13 @@ def calibrate_plan(
         "frequency": frequency,
     }
     settings = settings_of(read, options, threads, in_bytes(max_memory))
+    scene = scene_of(loaded, edition)
+    if (words := survey_announcement(scene, read, settings)) is not None:
+        note(words)
     with stage_progress() as show:
         found = calibrate(
             loaded,
-            scene_of(loaded, edition),
+            scene,
             read,
             settings,
             offsets=offset,

@@ -151,6 +151,11 @@ class Commands(TyperGroup):
             self.load(args[0])
         return super().resolve_command(ctx, args)
 
+    def _options_of(self, ctx: Any) -> set[str]:
+        """Names of the options of the command that was called."""
+        command = self.get_command(ctx, ctx.invoked_subcommand or "")
+        return {name for option in getattr(command, "params", ()) for name in option.opts}
+
     def invoke(self, ctx: Any) -> Any:
         """Run the command; turn anticipated errors into a message and an exit code."""
         try:
@@ -163,5 +168,5 @@ class Commands(TyperGroup):
         except Exception as error:
             if not is_anticipated(error):
                 raise
-            print_error(with_remedy(error))
+            print_error(with_remedy(error, self._options_of(ctx)))
             raise typer.Exit(EXIT_FAILURE) from error

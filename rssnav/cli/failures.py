@@ -2,7 +2,7 @@
 
 import sys
 import warnings
-from collections.abc import Generator
+from collections.abc import Collection, Generator
 from contextlib import contextmanager
 from typing import Any
 
@@ -21,9 +21,11 @@ REMEDIES = {
     "layers": "--layer NAME=KIND",
     "close_gaps_m": "--close-gaps M",
     "install_ifc": 'pip install "rssnav[ifc]"',
-    "less_memory": "--reflections, --transmissions, --cell-size, --threads or --max-memory",
 }
 """What a user of the command does, by the key `remedy` that the libraries give an error."""
+
+LESS_MEMORY = ("--reflections", "--transmissions", "--cell-size", "--threads", "--max-memory")
+"""Options for the remedy "less_memory", of which a command has some."""
 
 
 def is_anticipated(error: Exception) -> bool:
@@ -55,9 +57,16 @@ def _show_as_line(message: Warning | str, *_: Any) -> None:
     print_error(f"warning: {message}")
 
 
-def with_remedy(error: Exception) -> str:
-    """Return an error's message on one line, with the command or option that helps."""
+def with_remedy(error: Exception, options: Collection[str] = ()) -> str:
+    """Return an error's message on one line, with the command or option that helps.
+
+    `options` are those of the command that has failed.
+    """
     text, remedy = describe(error), getattr(error, "remedy", None)
     if remedy is None:
         return text
-    return f"{text}; use {REMEDIES[remedy].format(path=getattr(error, 'path', None) or 'FILE')}"
+    if remedy == "less_memory":
+        words = " or ".join(option for option in LESS_MEMORY if option in options)
+    else:
+        words = REMEDIES[remedy].format(path=getattr(error, "path", None) or "FILE")
+    return f"{text}; use {words}" if words else text

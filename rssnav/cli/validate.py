@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 import floorplans
-from rssnav.cli.console import print_json, print_pairs, print_table, say, stage_progress
+from rssnav.cli.console import note, print_json, print_pairs, print_table, say, stage_progress
 from rssnav.cli.options import (
     Diffractions,
     DynamicRange,
@@ -35,7 +35,7 @@ from rssnav.cli.survey_options import (
 from rssnav.measurements.hold_out import SQUARE_M
 from rssnav.measurements.pages import cautions_of, save_validation_page, sentence_of
 from rssnav.measurements.survey import Survey
-from rssnav.measurements.traced import traced_dbm
+from rssnav.measurements.traced import survey_announcement, traced_dbm
 from rssnav.measurements.validation import Validation, validate
 from rssnav.scenes import scene_of
 
@@ -91,9 +91,12 @@ def validate_plan(
         "frequency": frequency,
     }
     settings = settings_of(read, options, threads, in_bytes(max_memory))
+    scene = scene_of(loaded, edition)
+    if (words := survey_announcement(scene, read, settings)) is not None:
+        note(words)
     with stage_progress() as show:
         traced = traced_dbm(
-            scene_of(loaded, edition),
+            scene,
             read,
             settings,
             lambda done, total: show("transmitters", done, total),

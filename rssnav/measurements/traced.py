@@ -17,6 +17,7 @@ from raytrace import (
     received_power,
 )
 from raytrace.arrays import Floats
+from rssnav.cost_notice import points_announcement
 from rssnav.measurements.survey import Survey
 from rssnav.progress import Progress
 
@@ -55,6 +56,33 @@ class TraceSettings:
         if known.antenna is not None and not self.is_antenna_chosen:
             antenna = known.antenna
         return Transmitter(known.position, known.power_dbm, self.frequency_hz, antenna)
+
+
+def survey_announcement(scene: Scene, survey: Survey, settings: TraceSettings) -> str | None:
+    """Return what tracing a survey will take, in words, if that is long; otherwise None.
+
+    Estimated with the transmitter that was measured most often.
+
+    Raises
+    ------
+    SceneError
+        Where it is in no room; the message names it.
+    """
+    counts = np.bincount(survey.transmitter, minlength=len(survey.transmitters))
+    most = int(np.argmax(counts))
+    try:
+        return points_announcement(
+            scene,
+            settings.transmitter(survey, most),
+            survey.points[survey.transmitter == most],
+            settings.config,
+            settings.threads,
+            settings.max_memory_bytes,
+            n_transmitters=int(np.count_nonzero(counts)),
+        )
+    except SceneError as error:
+        name = survey.transmitters[most].name
+        raise SceneError(f"transmitter {name!r}: {error}") from error
 
 
 def traced_dbm(

@@ -4,6 +4,7 @@ import re
 import time
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import floorplans
@@ -11,6 +12,7 @@ from raytrace import CostEstimate, Grid, TraceConfig, Transmitter, estimate_cost
 from rssnav import cost_notice
 from rssnav.maps import make_map
 from rssnav.scenes import scene_of
+from rssnav.transmitter_maps import make_transmitter_maps
 
 
 def test_a_quick_map_is_not_announced() -> None:
@@ -75,7 +77,54 @@ def test_a_notice_says_what_would_be_affordable() -> None:
 def test_extrapolated_numbers_are_said_to_be_rough() -> None:
     grid = Grid.over((0.0, 0.0, 150.0, 100.0), 0.5, 1.5)
     words = cost_notice.sentence(CostEstimate(10**9, 530.0, 25_000_000, True), grid)
-    assert ", on the order of 9 minutes and 25 MB of memory; " in words
+    assert (
+        ", on the order of 9 minutes and 25 MB of memory "
+        "(extrapolated from fewer reflections: may be far off); "
+    ) in words
+
+
+def test_a_rough_estimate_is_announced_even_where_it_is_short(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    plan = floorplans.load("scenario2")
+    scene, grid = scene_of(plan), Grid.over(plan.bounds, 1.0, 2.0)
+    for is_extrapolated in (False, True):
+        cost = CostEstimate(1000, 3.0, 10_000_000, is_extrapolated)
+        monkeypatch.setattr(cost_notice, "estimate_cost", lambda *_, cost=cost, **__: cost)
+        words = cost_notice.announcement(
+            scene, Transmitter(plan.source), grid, TraceConfig(20, 1, 20)
+        )
+        assert (words is not None) == is_extrapolated
+
+
+def test_several_transmitters_are_announced_once_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cost_notice, "MAX_SILENT_WORK", 0.0)
+    monkeypatch.setattr(cost_notice, "estimate_cost", lambda *_, **__: CostEstimate(1000, 50.0, 10))
+    plan, heard = floorplans.load("flat"), list[str]()
+    sending = {name: Transmitter((x, 4.7, 2.4)) for name, x in (("a", 6.0), ("b", 5.0), ("c", 4.0))}
+    make_transmitter_maps(plan, sending, config=TraceConfig(0, 0), notice=heard.append)
+    (words,) = heard
+    assert words.startswith("estimate: 3 000 paths to 108 cells from 3 transmitters, about 2 min")
+
+
+def test_a_survey_is_estimated_like_a_grid_in_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    grids: list[Grid] = []
+
+    def estimate(_scene: object, _transmitter: object, grid: Grid, *_: object, **__: object):
+        grids.append(grid)
+        return CostEstimate(1000, 6.0, 10)
+
+    monkeypatch.setattr(cost_notice, "estimate_cost", estimate)
+    monkeypatch.setattr(cost_notice, "MAX_SILENT_WORK", 0.0)
+    points = np.random.default_rng(1).uniform((1.0, 2.0, 1.0), (5.0, 4.0, 1.4), (150, 3))
+    made_with = scene_of(floorplans.load("flat")), Transmitter((6.0, 4.7, 2.4)), points
+    assert cost_notice.points_announcement(*made_with, TraceConfig(2, 1)) is None
+    words = cost_notice.points_announcement(*made_with, TraceConfig(2, 1), n_transmitters=3)
+    assert words is not None
+    assert "3 000 paths from 3 transmitters, about 18 seconds" in words
+    (grid, _) = grids
+    assert grid.shape == (13, 13)
+    assert (grid.x[0], grid.x[-1]) == (points[:, 0].min(), points[:, 0].max())
 
 
 @pytest.mark.parametrize("reflections", [6, 20])

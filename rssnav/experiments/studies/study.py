@@ -2,8 +2,8 @@
 
 A study is data: its pieces of work, and functions that measure a piece and that make tables and
 figures of all outcomes. A piece is a hashable value that says completely what is measured. Its
-trainings are kept in files, so a study that was interrupted or killed continues where it was. To
-add a study, describe it and list it in :mod:`rssnav.experiments.studies`.
+trainings and searches are kept in files, so a study that was interrupted or killed continues where
+it was. To add a study, describe it and list it in :mod:`rssnav.experiments.studies`.
 """
 
 from __future__ import annotations
@@ -157,7 +157,7 @@ def run_study(
         The study.
     out : str or Path
         Folder of ``maps/``, which are traced when missing, of ``training/``, from which finished
-        runs are reused, and of ``tables/`` and ``figures/``.
+        runs and searches are reused, and of ``tables/`` and ``figures/``.
     quick : bool
         Few realisations.
     seed : int
@@ -167,7 +167,7 @@ def run_study(
     max_memory_bytes : int, optional
         Most memory that tracing may take; by default half of what is free.
     resume : bool
-        Reuse existing trainings; otherwise train again.
+        Reuse existing trainings and searches; otherwise train and search again.
     progress : callable, optional
         Called as ``progress(stage, done, total)``, with a stage per map and one for the study.
     notice : callable, optional

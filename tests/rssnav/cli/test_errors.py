@@ -13,7 +13,8 @@ from cli_plans import QUICK, ROOM, done, edited, fault, room_file, run
 import floorplans
 import raytrace
 import rssnav
-from rssnav.cli.failures import REMEDIES
+from raytrace import MemoryLimitError
+from rssnav.cli.failures import REMEDIES, with_remedy
 
 DOOR = "offset_m = 1, width_m = 1, head_m = 2.4"
 SECOND_DOOR = '{ kind = "door", offset_m = 1.5, width_m = 1, head_m = 2 }'
@@ -249,8 +250,19 @@ def test_command_knows_every_remedy_that_the_libraries_name() -> None:
         for file in Path(package.__file__).parent.rglob("*.py")
     )
     named = re.findall(r'remedy = "(\w+)"|remedy="(\w+)"', text)
-    assert {first or second for first, second in named} <= set(REMEDIES)
+    assert {first or second for first, second in named} <= {*REMEDIES, "less_memory"}
     assert {"make_map", "replace_file", "unit"} <= {first or second for first, second in named}
+
+
+def test_a_remedy_names_only_options_that_the_command_has() -> None:
+    error = MemoryLimitError("the beams", 100, 10)
+    assert with_remedy(error, {"--help", "--max-memory"}).endswith("less; use --max-memory")
+    assert with_remedy(error).endswith("take less")
+    little = ("--max-memory", 0.001, "--reflections", 9)
+    failed = run("paths", "flat", "--to", "10.5,1.5", *little)
+    assert failed.exit_code == 1
+    ends = "use --reflections or --transmissions or --max-memory"
+    assert failed.stderr.strip().endswith(ends)
 
 
 def test_warnings_of_the_libraries_are_plain_lines(tmp_path, monkeypatch) -> None:

@@ -19,6 +19,7 @@ from rssnav.decision_process import DecisionProcess
 from rssnav.discrete_states import Fluctuation
 from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS, AgentName, flights
 from rssnav.experiments.paper.trainings import EPISODE_LIMIT
+from rssnav.experiments.search_store import SearchRequest, fly_or_reuse
 from rssnav.experiments.studies.study import Conditions
 from rssnav.learning_parameters import QLearning
 from rssnav.optimal_flights import (
@@ -30,7 +31,7 @@ from rssnav.optimal_flights import (
 )
 from rssnav.results import TrainingResult
 from rssnav.schedule import NO_STEP_LIMIT
-from rssnav.searchers import ParticleFilter, RandomWalk, RssAscent, Searcher, search
+from rssnav.searchers import ParticleFilter, RandomWalk, RssAscent, Searcher
 from rssnav.world import GridWorld
 
 STEADY, NOISE = Fluctuation(), Fluctuation(sigma_db=2.0)
@@ -145,14 +146,10 @@ class Search:
 
     def fly(self, world: GridWorld, conditions: Conditions) -> Iterator[Performance]:
         """Yield the searcher's performance."""
-        result = search(
-            world,
-            self.searcher,
-            runs=conditions.runs,
-            seed=conditions.seed,
-            fluctuation=self.fluctuation,
-            threads=conditions.store.threads,
+        request = SearchRequest(
+            world, self.searcher, self.fluctuation, conditions.runs, conditions.seed
         )
+        result = fly_or_reuse(request, conditions.store)
         found = result.found
         yield Performance(
             kind="searcher",
