@@ -39,6 +39,8 @@ def cache_folder(sources: Path) -> Path | None:
 
     It lies in ``NUMBA_CACHE_DIR``, ``XDG_CACHE_HOME`` or ``~/.cache``, or in a folder for temporary
     files that only this user can read and write, whichever can be written first. None if none can.
+    One that another user owns, besides the system's administrator, or that all may write is not
+    used, since its files are code.
     """
     name = f"{sources.parent.name}-{sources_digest(sources)}"
     preferred = [root / name for root in _roots()]
@@ -48,7 +50,8 @@ def cache_folder(sources: Path) -> Path | None:
     private = Path(tempfile.gettempdir()) / f"rssnav-{_user()}"
     folder = private / name if _is_private(private) else None
     if preferred and folder is not None and _is_usable(folder):
-        _warn(f"{preferred[0]} cannot be written: compiled kernels are kept in {folder}")
+        reason = "belongs to others" if _is_foreign(preferred[0]) else "cannot be written"
+        _warn(f"{preferred[0]} {reason}: compiled kernels are kept in {folder}")
         return folder
     if folder is not None and _is_usable(folder):
         return folder
@@ -62,7 +65,7 @@ def _roots() -> Iterator[Path]:
         yield Path(chosen)
         return
     caches = os.environ.get("XDG_CACHE_HOME")
-    if caches:
+    if caches and os.path.isabs(caches):  # the specification has relative ones ignored
         yield Path(caches) / "rssnav" / "kernels"
         return
     try:
@@ -78,10 +81,24 @@ def _user() -> str:
 def _is_usable(folder: Path) -> bool:
     """Create a folder; whether it can be written, or holds kernels that can be read."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o755, exist_ok=True)
+        if _is_foreign(folder):
+            return False
         return os.access(folder, os.W_OK) or any(folder.iterdir())
     except OSError:
         return False
+
+
+def _is_foreign(folder: Path) -> bool:
+    """Whether others than this user and the administrator may put files into a folder."""
+    try:
+        found = folder.stat()
+    except OSError:
+        return False
+    if not hasattr(os, "getuid"):
+        return False
+    return found.st_uid not in (os.getuid(), 0) or bool(found.st_mode & stat.S_IWOTH)
 
 
 def _is_private(folder: Path) -> bool:

@@ -104,6 +104,43 @@ def test_an_unwritable_folder_is_replaced_and_reported(tmp_path, sources, monkey
     assert not list(sources.glob("**/*.nb?"))
 
 
+def test_a_relative_folder_is_ignored(tmp_path, sources, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", "here")
+    folder = cache_folder(sources)
+    assert folder is not None
+    assert folder.is_relative_to(tmp_path / "home" / ".cache")
+
+
+@pytest.mark.parametrize("trap", ["all may write", "of another user"])
+def test_kernels_of_others_are_not_used(tmp_path, sources, monkeypatch, trap) -> None:
+    """They are code that runs as this user."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    folder = cache_folder(sources)
+    assert folder is not None
+    (folder / "kernel.nbi").write_text("")
+    if trap == "all may write":
+        folder.chmod(0o777)
+    elif os.getuid() == 0:
+        os.chown(folder, 12345, -1)
+    else:
+        pytest.skip("only the administrator can give a folder to another user")
+    cache_folder.cache_clear()
+    with pytest.warns(RuntimeWarning, match="belongs to others: compiled kernels are kept in"):
+        found = cache_folder(sources)
+    assert found is not None
+    assert found.parent == tmp_path / f"rssnav-{os.getuid()}"
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only the administrator can leave such a folder")
+def test_the_administrator_s_kernels_are_used(tmp_path, sources, monkeypatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    folder = cache_folder(sources)
+    monkeypatch.setattr(os, "getuid", lambda: 12345)
+    cache_folder.cache_clear()
+    assert cache_folder(sources) == folder
+
+
 @pytest.mark.parametrize("trap", ["open", "link", "file"])
 def test_a_folder_that_others_may_write_is_not_used(tmp_path, sources, monkeypatch, trap) -> None:
     (tmp_path / "file").write_text("")
