@@ -30,7 +30,7 @@ from matplotlib.style import available, context
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from atomicfiles import atomic_write
+from atomicfiles import atomic_write, atomic_write_all
 from floorplans.pictures.plan_view import PAGE_IN as PAGE_IN
 
 if TYPE_CHECKING:
@@ -179,13 +179,17 @@ def save_picture(figure: Figure, path: str | Path) -> None:
 
 
 def save_figure(figure: Figure, stem: Path) -> bytes:
-    """Write a figure to ``stem`` + .png and .pdf; return the PNG's content."""
-    stem.parent.mkdir(parents=True, exist_ok=True)
-    png = png_bytes(figure)
-    stem.with_name(f"{stem.name}.png").write_bytes(png)
+    """Write a figure to ``stem`` + .png and .pdf atomically; return the PNG's content."""
+    png, pdf = png_bytes(figure), BytesIO()
     figure.set_layout_engine("none")  # the PDF has the layout of the PNG
     with drawing():
-        figure.savefig(stem.with_name(f"{stem.name}.pdf"), metadata={"CreationDate": None})
+        figure.savefig(pdf, format="pdf", metadata={"CreationDate": None})
+    atomic_write_all(
+        {
+            stem.with_name(f"{stem.name}.png"): png,
+            stem.with_name(f"{stem.name}.pdf"): pdf.getvalue(),
+        }
+    )
     return png
 
 

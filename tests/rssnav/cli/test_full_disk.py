@@ -5,29 +5,15 @@ from __future__ import annotations
 import errno
 import os
 import tempfile
-from collections.abc import Generator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from cli_plans import QUICK, done, edited, room_file, run
+from small_disk import no_file_above
 
 from raytrace import RadioMap
 from rssnav import TrainingResult
 from rssnav.experiments.paper import scenarios
-
-resource = pytest.importorskip("resource")
-
-
-@contextmanager
-def no_file_above(n_bytes: int) -> Generator[None]:
-    """Let every write beyond a size fail, as on a full disk."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (n_bytes, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +28,7 @@ def files(tmp_path_factory) -> dict[str, Path]:
     misfit = text.replace("points = [[3, 0], [3, 2.5]]", "points = [[3, 0.01], [3, 2.5]]")
     found["misfit"].write_text(misfit, encoding="utf-8")
     done("plan", "export", found["plan"], "-o", found["dxf"])
+    done("paths", found["plan"], "--to", "5,3", *QUICK)  # keeps its kernels while there is room
     return found
 
 

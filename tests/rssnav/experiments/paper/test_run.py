@@ -3,12 +3,15 @@
 import csv
 import json
 import re
+import shutil
 from dataclasses import replace
 from html import escape
 
 import h5py
 import numpy as np
 import pytest
+from cli_plans import run as command
+from small_disk import no_file_above
 from small_paper import plan_text, small_data
 
 from rssnav import TrainingInterrupted, TrainingResult
@@ -397,3 +400,31 @@ def test_quick_runs_say_so(run):
     report = Report((), run.paper.tables, run.paper.findings, (), {}, quick)
     assert "quick run" in render(report)
     assert "quick run" not in run.html
+
+
+@pytest.mark.parametrize(
+    ("words", "missing"),
+    [
+        (("report",), None),
+        (("experiments", "--runs", RUNS), None),
+        (("experiments", "--runs", RUNS), "training"),
+        (("experiments", "--runs", RUNS), "maps"),
+    ],
+)
+def test_a_full_disk_leaves_every_file_as_it_was(run, tmp_path, monkeypatch, words, missing):
+    def content():
+        return {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+
+    out = tmp_path / "results"
+    shutil.copytree(run.out, out)
+    if missing is not None:
+        shutil.rmtree(out / missing)
+    before = content()
+    monkeypatch.setitem(run_paper.__kwdefaults__, "plans", run.plans)
+    with no_file_above(64):
+        failed = command(*words, "--out", out)
+    assert failed.exit_code == 1, failed.output
+    (line,) = [text for text in failed.stderr.splitlines() if text.startswith("rssnav: ")]
+    assert "File too large" in line
+    assert str(out) in line
+    assert content() == before
