@@ -29,7 +29,7 @@ _MATERIAL_WORDS: Lists[str] = (
     )),
     ("plasterboard", (
         "plaster", "gyps", "gips", "dryw", "placo", "putz", "cartong", "yeso", "trockenb",
-        "gkb", "gk ", "gkf ", "rigips", "*gips", "*putz ",
+        "gkb", "gk ", "gkf ", "rigips", "*gips", "*putz ", "gwb ", "gyp ",
     )),
     ("glass", ("glas", "glaz", "verre", "vidri", "vetro", "curtain", "szkl", "*glas ", "vitr")),
     ("wood", (
@@ -100,6 +100,8 @@ def layer_material_named(name: str) -> str | None:
     --------
     >>> layer_material_named("Metal - Stud Layer"), layer_material_named("Cement render")
     ('air', 'concrete')
+    >>> layer_material_named("5/8 in. GWB"), layer_material_named("Gyp. Bd.")
+    ('plasterboard', 'plasterboard')
     """
     words = words_of(name)
     material = full_name(words) or first_match(words, _MATERIAL_WORDS)
