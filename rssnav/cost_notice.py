@@ -92,7 +92,13 @@ def paths_announcement(
         Where the transmitter is not inside the building.
     """
     return points_announcement(
-        scene, transmitter, np.array([receiver]), config, 1, max_memory_bytes
+        scene,
+        transmitter,
+        np.array([receiver]),
+        config,
+        1,
+        max_memory_bytes,
+        bytes_a_vertex=BYTES_A_PATH,
     )
 
 
@@ -104,10 +110,12 @@ def points_announcement(
     threads: int | None = None,
     max_memory_bytes: int | None = None,
     n_transmitters: int = 1,
+    bytes_a_vertex: int = 0,
 ) -> str | None:
     """Return what the paths to points (n, 3) [m] will take, as `paths_announcement`.
 
     They are estimated for a grid of about as many points in the same part of the building.
+    `bytes_a_vertex` is what is kept of each vertex of a path; nothing where powers are summed.
     """
     grid = _grid_like(points)
     if n_transmitters * work(scene, grid, config) * CELLS_OF_BEAMS < MAX_SILENT_WORK:
@@ -118,7 +126,7 @@ def points_announcement(
     cost = _of_several(cost, n_transmitters)
     if cost.seconds <= LONG_PATHS_S and not cost.is_extrapolated:
         return None
-    memory = _memory(cost.memory_bytes + cost.paths * BYTES_A_PATH * (config.max_reflections + 3))
+    memory = _memory(cost.memory_bytes + cost.paths * bytes_a_vertex * (config.max_reflections + 3))
     return (
         f"estimate: {_count(cost.paths)} paths{_from(n_transmitters)}, "
         f"{_roughly(cost, memory)}; fewer reflections reduce all three"

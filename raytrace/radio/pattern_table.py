@@ -1,6 +1,7 @@
 """An antenna given by a table of its pattern, from arrays or from a CSV file."""
 
 import csv
+import io
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -18,6 +19,8 @@ ANGLE_KEYS = ("theta_deg", "phi_deg")
 GAIN_KEYS = ("gain_dbi", "gain_theta_dbi", "gain_phi_dbi")
 PHASE_KEYS = ("phase_theta_deg", "phase_phi_deg")
 TOLERANCE_DEG = 1e-6
+MAX_CHARACTERS = 30_000_000
+"""Largest pattern file that is read."""
 LEAST_STEP_DEG = 0.1
 """Smallest step of a table that is made of another antenna [deg]."""
 
@@ -162,7 +165,10 @@ def _read_columns(path: Path) -> dict[str, Floats]:
     """Columns of a pattern file by their headings."""
     try:
         with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+            text = file.read(MAX_CHARACTERS + 1)
+        if len(text) > MAX_CHARACTERS:
+            raise AntennaError(f"{path}: more than {MAX_CHARACTERS} characters")
+        rows = list(csv.DictReader(io.StringIO(text, newline="")))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise AntennaError(f"{path}: the file cannot be read: {error}") from error
     keys = tuple(rows[0]) if rows else ()

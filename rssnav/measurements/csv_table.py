@@ -15,6 +15,7 @@ from rssnav.measurements.survey import SurveyError
 
 MAX_ROWS = 1_000_000
 MAX_CELL = 200
+MAX_CHARACTERS = 100_000_000
 
 
 @dataclass(frozen=True)
@@ -102,9 +103,12 @@ def read_table(path: Path, required: Sequence[str], optional: Sequence[str]) -> 
         Where it cannot be read.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        with path.open(encoding="utf-8-sig") as file:
+            text = file.read(MAX_CHARACTERS + 1)
     except UnicodeDecodeError as error:
         raise SurveyError("not a text file in UTF-8: expected CSV", path) from error
+    if len(text) > MAX_CHARACTERS:
+        raise SurveyError(f"more than {MAX_CHARACTERS} characters: give a part of them", path)
     if "\0" in text:
         raise SurveyError("holds a NUL character: expected CSV", path)
     lines = csv.reader(text.splitlines(), strict=True)

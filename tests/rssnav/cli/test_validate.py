@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import json
 import re
+from pathlib import Path
 
 import pytest
 from cli_plans import done, fault, room_file, run
 from small_surveys import HEADING, survey_rows, written
+
+from raytrace import AntennaError, PatternTable
+from raytrace.radio import pattern_table
+from rssnav.measurements import csv_table
+from rssnav.measurements.survey import SurveyError
 
 
 @pytest.fixture(scope="module")
@@ -80,3 +86,13 @@ def test_example_is_not_overwritten_unless_forced(tmp_path) -> None:
     assert (out / "flat.toml").read_text() == "mine"
     done("example", "--out", out, "--force")
     assert "Kolakowski" in (out / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no file without end")
+def test_files_without_end_are_refused(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(csv_table, "MAX_CHARACTERS", 1000)
+    monkeypatch.setattr(pattern_table, "MAX_CHARACTERS", 1000)
+    with pytest.raises(SurveyError, match="more than 1000 characters"):
+        csv_table.read_table(Path("/dev/zero"), ("tx",), ())
+    with pytest.raises(AntennaError, match="more than 1000 characters"):
+        PatternTable.from_csv("/dev/zero")
