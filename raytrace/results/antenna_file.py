@@ -6,6 +6,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from raytrace.errors import AntennaError
 from raytrace.radio.antennas import Antenna, HalfWaveDipole, Isotropic
 from raytrace.radio.directive import Monopole, Patch, Sector
 from raytrace.radio.pattern_table import PatternTable
@@ -58,8 +59,10 @@ def read_antenna(file: Checked, key: str) -> Antenna:
         return _read(file, key)
     except Hdf5ContentError:
         raise
-    except ValueError as error:
+    except AntennaError as error:
         raise Hdf5ContentError(f"attribute {key!r}: {error}") from error
+    except ValueError as error:  # it begins with the name of a parameter
+        raise Hdf5ContentError(f"attribute {key}_{error}") from error
 
 
 def _read(file: Checked, key: str) -> Antenna:
