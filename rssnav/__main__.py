@@ -29,6 +29,9 @@ def main() -> None:
             app(prog_name="rssnav")
         except SystemExit as end:
             code = end.code
+        except Exception:  # a library may turn an interrupt into any other error
+            if not INTERRUPTS.exit_code:
+                raise
     INTERRUPTS.end()
     sys.exit(code)
 

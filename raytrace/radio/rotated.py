@@ -33,11 +33,11 @@ class Rotated:
 
     def __post_init__(self) -> None:
         """Check the axes; raise ValueError where they are not orthogonal unit vectors."""
-        axes = np.array([self.x_axis, self.z_axis], dtype=np.float64)
-        if axes.shape != (2, 3) or not (np.abs(axes) <= 1.0 + TOLERANCE).all():
-            off = np.inf
-        else:
-            off = np.abs(axes @ axes.T - np.eye(2)).max()
+        off = np.inf
+        if len(self.x_axis) == len(self.z_axis) == 3:
+            axes = np.array([self.x_axis, self.z_axis], dtype=np.float64)
+            if (np.abs(axes) <= 1.0 + TOLERANCE).all():
+                off = np.abs(axes @ axes.T - np.eye(2)).max()
         if off > TOLERANCE:
             raise ValueError(
                 f"x_axis = {self.x_axis}, z_axis = {self.z_axis}: expected orthogonal unit vectors"

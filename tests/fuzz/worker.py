@@ -22,6 +22,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
 from fuzz.targets import TARGETS, Target
+from raytrace import MemoryLimitError
 
 MEMORY_BYTES = 2 << 30
 """How much the address space of a worker may grow."""
@@ -161,6 +162,8 @@ def run_case(name: str, case: bytes, folder: Path) -> Failure | None:
     path.write_bytes(case)
     try:
         target.run(path)
+    except MemoryLimitError:
+        return None
     except MemoryError as error:
         return _failure(name, "memory", case, error)
     except Exception as error:

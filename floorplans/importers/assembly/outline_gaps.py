@@ -174,6 +174,8 @@ def _corners(
 
 def _between_groups(lines: Lines, tree: shapely.STRtree, max_gap_m: float) -> Segments:
     """Links from each group of connected walls to a few of the nearest other walls."""
+    if not len(lines):
+        return np.empty((0, 2, 2))
     touching = tree.query(lines, "dwithin", distance=2 * TOLERANCE_M)
     graph = coo_array((np.ones(touching.shape[1]), tuple(touching)), shape=(len(lines),) * 2)
     n_groups, labels = connected_components(graph, directed=False)

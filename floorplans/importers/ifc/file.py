@@ -14,6 +14,7 @@ from zipfile import BadZipFile, ZipFile, is_zipfile
 from floorplans.errors import PlanError
 from floorplans.importers.draft import ImportOptions
 from floorplans.importers.ifc.curves import Entity
+from floorplans.importers.ifc.parts import parts_of
 from floorplans.importers.ifc.shapes import Scale, placement_of
 from floorplans.importers.units import unit_length
 
@@ -170,14 +171,12 @@ def storey_of(model: Model, level: str | None, metre: float) -> Storey:
 
 def _storeys(model: Model, metre: float) -> list[Storey]:
     """All storeys, lowest first."""
-    from ifcopenshell.util.element import get_decomposition
-
     found = [
         Storey(
             entity,
             entity.Name or entity.LongName or "",
             metre * float(placement_of(entity)[2, 3]),
-            tuple(sorted(get_decomposition(entity, is_recursive=True), key=lambda e: e.id())),
+            parts_of(entity),
         )
         for entity in model.by_type("IfcBuildingStorey")
     ]

@@ -18,6 +18,7 @@ from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import RawOpening, RawWall
 from floorplans.importers.ifc.curves import Entity
 from floorplans.importers.ifc.materials import Materials
+from floorplans.importers.ifc.parts import parts_of
 from floorplans.importers.ifc.shapes import Body, Scale, axis_points, bodies, placement_of
 from floorplans.walls import OpeningKind
 
@@ -93,12 +94,10 @@ def read_filling(filling: Entity, floor_m: float, scale: Scale) -> RawOpening | 
 
 def bodies_of_parts(element: Entity, scale: Scale) -> list[Body]:
     """Bodies of an element, or of its parts."""
-    from ifcopenshell.util.element import get_decomposition
-
     found = bodies(element, scale)
     if found or not element.IsDecomposedBy:
         return found
-    return [body for part in get_decomposition(element) for body in bodies(part, scale)]
+    return [body for part in parts_of(element) for body in bodies(part, scale)]
 
 
 Line = tuple[tuple[float, float], tuple[float, float], float | None]

@@ -127,6 +127,14 @@ def _metadata_beside(picture: Path, scale_m: float | None) -> tuple[MapMetadata,
     return MapMetadata(picture.name, scale_m), ()
 
 
+def _is_file(path: Path) -> bool:
+    """Whether a path is that of a file; one too long for the system is none."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
 def _picture_of(path: Path, image: str) -> Path:
     """Path of the picture that a YAML file names, in or below the YAML file's folder."""
     folder = path.parent.resolve()
@@ -135,7 +143,7 @@ def _picture_of(path: Path, image: str) -> Path:
         raise PlanError(
             "expected a .pgm or .png file beside the YAML file", ("image",), image, str(path)
         )
-    if not picture.is_file():
+    if not _is_file(picture):
         own = [
             path.with_suffix(ending) for ending in PICTURES if path.with_suffix(ending).is_file()
         ]

@@ -29,6 +29,7 @@ from floorplans.importers import (
     assemble,
     import_plan,
 )
+from floorplans.importers.assembly.outline_gaps import gap_links
 from floorplans.importers.assembly.source_and_start import CELL_M, choose_source_and_start
 from floorplans.importers.centrelines.align import aligned_to_main_directions, along_walls
 from floorplans.importers.centrelines.double_doors import join_leaves
@@ -480,3 +481,7 @@ def test_an_opening_covers_the_chords_of_a_curve_and_no_corner(
     found = [o for wall in plan.walls for o in wall.openings]
     assert {o.material for o in found} == {"glass"}
     assert sorted(o.width_m for o in found) == pytest.approx(sorted(widths), abs=0.02)
+
+
+def test_no_walls_have_no_gaps():
+    assert gap_links(np.array([], dtype=np.object_), 8.0).shape == (0, 2, 2)

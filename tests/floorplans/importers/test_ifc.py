@@ -465,3 +465,18 @@ def test_old_schemas_say_what_to_do(house_file, tmp_path) -> None:
     old.write_text(house_file.read_text().replace("('IFC4')", "('IFC2X_FINAL')"))
     message = message_of(old)
     assert "IFC2X_FINAL; save the model as IFC2x3 or IFC4" in message
+
+
+def test_a_storey_that_is_a_part_of_its_own_part_comes_in(tmp_path) -> None:
+    """Relations that run in a circle end: the walls are those of the storey, each once."""
+    model = house()
+    whole = import_plan(model.write(tmp_path / "house.ifc")).plan
+    relation = model.file.create_entity(
+        "IfcRelAggregates",
+        GlobalId="0" * 22,
+        RelatingObject=model.file.by_type("IfcWall")[0],
+        RelatedObjects=[model.storey],
+    )
+    assert relation.RelatedObjects == (model.storey,)
+    circle = import_plan(model.write(tmp_path / "circle.ifc")).plan
+    assert len(circle.walls) == len(whole.walls)

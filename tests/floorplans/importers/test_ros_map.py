@@ -381,3 +381,12 @@ def test_free_space_that_no_wall_separates_is_outside_and_counted(tmp_path) -> N
     imported = import_plan(write_map(tmp_path, drawn(walls, free | other, *size)))
     (sentence,) = imported.warnings
     assert sentence.startswith("10 % of the map's free pixels (8 m² of 7")
+
+
+def test_a_name_too_long_for_any_file_is_no_file(tmp_path) -> None:
+    (tmp_path / "map.yaml").write_text(
+        f"image: {'room' * 500}.png\nresolution: 0.05\norigin: [0, 0, 0]\n"
+        "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
+    )
+    with pytest.raises(PlanError, match="there is no such file"):
+        import_plan(tmp_path / "map.yaml")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from raytrace import HalfWaveDipole, PatternTable
+from raytrace import HalfWaveDipole, Isotropic, PatternTable
 from raytrace.radio.rotated import Rotated
 
 RNG = np.random.default_rng(61)
@@ -35,3 +35,9 @@ def test_the_pattern_points_in_the_direction_and_keeps_its_gain(direction) -> No
 def test_a_direction_without_length_is_none() -> None:
     with pytest.raises(ValueError, match="expected three finite numbers, not all 0"):
         Rotated.towards(HalfWaveDipole(), (0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("axis", [(), (1.0, 0.0), (1.0, 0.0, 0.0, 0.0)])
+def test_axes_of_another_length_are_refused(axis: tuple[float, ...]) -> None:
+    with pytest.raises(ValueError, match="expected orthogonal unit vectors"):
+        Rotated(Isotropic(), axis, (0.0, 0.0, 1.0))  # pyright: ignore[reportArgumentType]

@@ -93,3 +93,27 @@ INTERRUPTS.install()
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)
     assert (done.returncode, done.stderr) == (0, b"")
+
+
+def test_an_error_that_an_interrupt_becomes_is_an_interrupt() -> None:
+    """Libraries that are being imported may turn KeyboardInterrupt into another error."""
+    code = """
+import os, signal, time
+import rssnav.cli
+from rssnav.__main__ import main
+
+def app(prog_name):
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(10)
+    except KeyboardInterrupt:
+        raise NameError("half imported") from None
+
+rssnav.cli.app = app
+main()
+"""
+    ended = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 143
+    assert ended.stderr == "rssnav: interrupted; no incomplete file was written\n"
