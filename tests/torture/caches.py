@@ -75,12 +75,12 @@ def damaged(place: Path) -> Setting:
 def blocked(place: Path) -> Setting:
     """A copy of the cache with a folder in the place of each file of code.
 
-    What is damaged there is one line, and what cannot be kept there another.
+    Such files count as missing; that what is compiled instead cannot be kept is one line.
     """
     for path in _copy(place).rglob("*.nbc"):
         path.unlink()
         path.mkdir()
-    return Setting({"XDG_CACHE_HOME": str(place)}, MAP, lines=2)
+    return Setting({"XDG_CACHE_HOME": str(place)}, MAP, lines=1)
 
 
 def read_only(place: Path) -> Setting:
