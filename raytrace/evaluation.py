@@ -64,7 +64,8 @@ def evaluate_paths(
     tables = tables_of_polarisations(
         transmitter, slabs, receive_antenna=receive_antenna, through_walls=True
     )
-    return replace(paths, gain=gains_of(tables, paths.steps)).with_bounded_gain()
+    gain, pairs = gains_of(tables, paths.steps)
+    return replace(paths, gain=gain, pair_gains=pairs).with_bounded_gain()
 
 
 @dataclass(frozen=True, eq=False)

@@ -119,8 +119,8 @@ def _with_added_powers(paths: Paths, evaluations: Sequence[Evaluation]) -> Paths
     """Return paths whose powers are the sums of those of several evaluations."""
     if len(evaluations) == 1 or paths.steps is None or not len(paths):
         return paths
-    gains = gains_of([evaluation.tables for evaluation in evaluations], paths.steps)
-    return replace(paths, gain=gains)
+    gain, pairs = gains_of([evaluation.tables for evaluation in evaluations], paths.steps)
+    return replace(paths, gain=gain, pair_gains=pairs)
 
 
 def _ordered(found: list[Paths]) -> Paths:

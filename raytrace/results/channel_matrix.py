@@ -48,13 +48,17 @@ def channel_matrix(
     Raises
     ------
     ValueError
-        For a path to a receiver beyond `n_receivers`, or offsets that are not finite.
+        For antennas of unknown polarisation, and a path to a receiver beyond `n_receivers`, or offsets that are not finite.
     MemoryLimitError
         For more channels than half of the free memory holds.
     """
     offsets = np.asarray(offsets_hz, dtype=np.float64)
     if offsets.ndim != 1 or not (np.abs(offsets) <= MAX_OFFSET_HZ).all():
         raise ValueError(f"offsets_hz = {offsets_hz}: expected a list of numbers, up to 1e15 Hz")
+    if paths.pair_gains is not None:
+        raise ValueError(
+            "the polarisation of an antenna is unknown: expected elements of a known one"
+        )
     most = int(paths.receiver.max(initial=-1)) + 1
     n = most if n_receivers is None else index(n_receivers)
     if n < most:

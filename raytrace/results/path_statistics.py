@@ -68,12 +68,11 @@ class PathStatistics:
         azimuth = paths.arrival[:, 0]
         east, north = sums.mean(np.cos(azimuth)), sums.mean(np.sin(azimuth))
         spread = np.sqrt(np.maximum(1.0 - east**2 - north**2, 0.0))
-        gain = paths.weight * paths.gain
-        field = sums.of(gain.real) + 1j * sums.of(gain.imag)
+        coherent = sums.coherent_power(paths)
         return cls(
             path_count=path_count(sums.of(paths.weight), power),
             rss_dbm=power_dbm + _decibels(power),
-            rss_coherent_dbm=power_dbm + _decibels(np.abs(field) ** 2),
+            rss_coherent_dbm=power_dbm + _decibels(coherent),
             strongest_path_dbm=power_dbm + _decibels(strongest),
             mean_delay_s=mean_s,
             delay_spread_s=np.sqrt(variance),
@@ -96,6 +95,15 @@ class _Sums:
         sums = np.zeros(self._n)
         np.add.at(sums, self._receiver, values)
         return sums
+
+    def coherent_power(self, paths: Paths) -> Floats:
+        """Power (n,) of the sum of the paths' fields at each receiver, over all polarisations."""
+        pairs = paths.gain[:, None] if paths.pair_gains is None else paths.pair_gains
+        power = np.zeros(self._n)
+        for gain in pairs.T:
+            weighted = paths.weight * gain
+            power += self.of(weighted.real) ** 2 + self.of(weighted.imag) ** 2
+        return power
 
     def mean(self, values: Floats) -> Floats:
         """Mean (n,) of the paths' values at each receiver, weighted with power; 0 without."""

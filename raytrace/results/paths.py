@@ -52,10 +52,16 @@ class Paths:
     gain
         (n,) complex path gain with both antennas: its squared magnitude is received over
         transmitted power, at most 1, and the gains of a receiver's paths add up to its coherent
-        field.
+        field, unless the polarisation of an antenna is unknown.
     weight
         (n,) what a path counts for in sums: 1, or less for a path that grazes a corner or an edge
         and so exists on one side of the receiver only (docs/conventions.md, "Grazing rays").
+    steps
+        What the gains depend on; None for paths that were not traced.
+    pair_gains
+        (n, k) gains between k pairs of polarisations, for an antenna of unknown polarisation: of
+        each pair they add up to a coherent field, and the powers of these fields add up. None where
+        both polarisations are known.
     """
 
     receiver: Ints
@@ -65,6 +71,7 @@ class Paths:
     gain: Complexes
     weight: Floats
     steps: Steps | None = None
+    pair_gains: Complexes | None = None
 
     def __len__(self) -> int:
         """Number of paths."""
@@ -280,7 +287,9 @@ class Paths:
 
     def with_bounded_gain(self) -> Paths:
         """Return the same paths, with gains of at most 0 dB (docs/theory.md, section 10)."""
-        return replace(self, gain=self.gain / np.maximum(np.abs(self.gain), 1.0))
+        scale = 1.0 / np.maximum(np.abs(self.gain), 1.0)
+        pairs = None if self.pair_gains is None else self.pair_gains * scale[:, None]
+        return replace(self, gain=self.gain * scale, pair_gains=pairs)
 
     def with_halves_joined(self) -> Paths:
         """Return the same paths, with those merged that two beams each found half of (grazing)."""
@@ -318,6 +327,7 @@ class Paths:
             self.gain[rows],
             self.weight[rows],
             None if self.steps is None else rows_of(self.steps, rows),
+            None if self.pair_gains is None else self.pair_gains[rows],
         )
 
     def _of_width(self, most: int) -> Paths:
@@ -333,6 +343,7 @@ class Paths:
         most = max(paths.interactions.shape[1] for paths in parts)
         parts = [paths._of_width(most) for paths in parts]
         steps = [paths.steps for paths in parts if paths.steps is not None]
+        pairs = [paths.pair_gains for paths in parts if paths.pair_gains is not None]
         return cls(
             np.concatenate([paths.receiver for paths in parts]),
             np.concatenate([paths.interactions for paths in parts]),
@@ -341,6 +352,7 @@ class Paths:
             np.concatenate([paths.gain for paths in parts]),
             np.concatenate([paths.weight for paths in parts]),
             joined(steps) if len(steps) == len(parts) else None,
+            _joined_pairs(pairs, [len(paths) for paths in parts if paths.pair_gains is None]),
         )
 
 
@@ -358,6 +370,14 @@ class ImpulseResponse:
 
     taps: Complexes
     delay_s: Floats
+
+
+def _joined_pairs(pairs: list[Complexes], others: list[int]) -> Complexes | None:
+    """Join the gains of pairs; lists without any must be empty ones."""
+    if not pairs:
+        return None
+    assert not any(others), "paths with and without pairs of polarisations are no one list"
+    return np.concatenate(pairs)
 
 
 def _unit(vectors: Floats) -> Floats:

@@ -66,10 +66,16 @@ def _last_real(path: Ints) -> Ints:
     return np.maximum.accumulate(np.where(path >= 0, np.arange(len(path)), 0))
 
 
-def gains_of(tables: Sequence[FieldTables], steps: Steps) -> Complexes:
-    """Compute gains (n,), both antennas included, from steps.
+def gains_of(tables: Sequence[FieldTables], steps: Steps) -> tuple[Complexes, Complexes | None]:
+    """Compute gains, both antennas included, from steps.
 
-    Of several tables the powers are added; the phase is that of the strongest gain.
+    Returns
+    -------
+    gain
+        (n,) those of all tables together: the powers are added, and the phase is that of the
+        strongest gain.
+    pair_gains
+        (n, k) those of each of k tables; None of one.
     """
     lanes, path = step_lanes(steps)
     is_real = path >= 0
@@ -79,7 +85,8 @@ def gains_of(tables: Sequence[FieldTables], steps: Steps) -> Complexes:
         write_gains(of_one, lanes, np.empty((0, 4, WIDTH)), real, imag)
         found[path[is_real]] = (real + 1j * imag)[is_real]
     if len(tables) == 1:
-        return gains[0]
+        return gains[0], None
     size = np.abs(gains)
     strongest = np.take_along_axis(gains, size.argmax(axis=0)[None], axis=0)[0]
-    return np.sqrt((size**2).sum(axis=0)) * np.exp(1j * np.angle(strongest))
+    together = np.sqrt((size**2).sum(axis=0)) * np.exp(1j * np.angle(strongest))
+    return together, np.ascontiguousarray(gains.T)

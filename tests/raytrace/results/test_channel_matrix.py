@@ -11,6 +11,7 @@ import floorplans
 from raytrace import (
     AntennaArray,
     HalfWaveDipole,
+    Isotropic,
     MemoryLimitError,
     Paths,
     Scene,
@@ -121,3 +122,10 @@ def test_doppler_of_a_moving_transmitter(flat: Scene, paths: Paths) -> None:
     rate = (before.length_m - moved.length_m[:10]) / step_s / TRANSMITTER.wavelength_m
     found = before.doppler_hz(TRANSMITTER.frequency_hz, transmitter_velocity=velocity)
     np.testing.assert_allclose(found, rate, atol=0.01)
+
+
+def test_an_unknown_polarisation_has_no_channel(flat: Scene) -> None:
+    sending = replace(TRANSMITTER, antenna=Isotropic(polarisation="mean"))
+    paths = trace_paths(flat, sending, POINTS, TraceConfig(1, 0))
+    with pytest.raises(ValueError, match="polarisation of an antenna is unknown"):
+        channel_matrix(paths)

@@ -6,8 +6,11 @@ from buildings import box, door, wall
 from hypothesis import given
 from hypothesis import strategies as st
 
+import floorplans
 from raytrace import (
     Grid,
+    HalfWaveDipole,
+    Isotropic,
     Paths,
     PathStatistics,
     TraceConfig,
@@ -16,6 +19,7 @@ from raytrace import (
     trace_paths,
 )
 from raytrace.constants import SPEED_OF_LIGHT
+from rssnav import scene_of
 
 POWER_DBM = 20.0
 
@@ -159,3 +163,24 @@ def test_every_layer_of_a_map_is_the_statistic_of_its_paths() -> None:
     for name, layer in layers.items():
         values = getattr(expected, name).reshape(grid.shape)
         np.testing.assert_allclose(layer, values, rtol=1e-6, atol=1e-12, err_msg=name)
+
+
+@pytest.mark.parametrize("both", [False, True])
+def test_unknown_polarisations_add_the_powers_of_their_coherent_fields(both: bool) -> None:
+    unknown = Isotropic(polarisation="mean")
+    scene = scene_of(floorplans.load("flat"))
+    transmitter = Transmitter((1.2, 7.9, 0.8), antenna=unknown)
+    receiving = unknown if both else HalfWaveDipole()
+    grid, config = Grid.over((0.0, 0.0, 12.0, 9.0), 3.0, 1.3), TraceConfig(1, 1, 1)
+    radio_map = compute_radio_map(scene, transmitter, grid, config, receive_antenna=receiving)
+    points = grid.points()
+    paths = trace_paths(scene, transmitter, points, config, receive_antenna=receiving)
+    assert paths.pair_gains is not None
+    assert paths.pair_gains.shape == (len(paths), 4 if both else 2)
+    np.testing.assert_allclose(
+        np.abs(paths.gain) ** 2, (np.abs(paths.pair_gains) ** 2).sum(axis=1), rtol=1e-9
+    )
+    found = PathStatistics.of(paths, transmitter.power_dbm, len(points))
+    np.testing.assert_allclose(found.rss_dbm, radio_map.rss_dbm.ravel(), atol=1e-8)
+    coherent = radio_map.rss_coherent_dbm.ravel()
+    np.testing.assert_allclose(found.rss_coherent_dbm, coherent, atol=1e-6)

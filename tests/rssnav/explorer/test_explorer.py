@@ -139,6 +139,8 @@ def test_last_map_stays_until_the_new_one_is_there(session) -> None:
 
 
 def test_map_and_paths_of_a_moved_source_share_one_scene(session, monkeypatch) -> None:
+    session.move_source(7.4, 2.3)  # its map is in no cache, so the scene is built
+    wait_for_map(session)
     built: list[FloorPlan] = []
     monkeypatch.setattr("rssnav.explorer.tracing.PlanScene.of", built.append)
     session.move_source(7.3, 2.2)
