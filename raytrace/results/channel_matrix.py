@@ -48,7 +48,8 @@ def channel_matrix(
     Raises
     ------
     ValueError
-        For antennas of unknown polarisation, and a path to a receiver beyond `n_receivers`, or offsets that are not finite.
+        For antennas of unknown polarisation, a path to a receiver beyond `n_receivers`, or offsets
+        that are not finite.
     MemoryLimitError
         For more channels than half of the free memory holds.
     """
