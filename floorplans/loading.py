@@ -84,7 +84,7 @@ def read_text(plan: str | Path) -> tuple[str, str]:
         file = resources.files("floorplans") / "plans" / f"{plan}.toml"
         return file.read_text(encoding="utf-8"), file.name
     try:
-        with Path(plan).open(encoding="utf-8") as file:
+        with Path(plan).open(encoding="utf-8-sig") as file:
             return file.read(MAX_CHARACTERS + 1), str(plan)
     except UnicodeDecodeError as error:
         raise PlanError(f"not UTF-8 text: {error.reason}", origin=str(plan)) from error

@@ -118,3 +118,9 @@ def test_bytes_that_are_no_plan(tmp_path, content: bytes) -> None:
 def test_a_path_that_no_system_knows() -> None:
     with pytest.raises(PlanError, match="cannot be read: embedded null byte"):
         floorplans.load("a\0b.toml")
+
+
+def test_a_byte_order_mark_as_some_editors_write_it_is_no_content(tmp_path) -> None:
+    plan = floorplans.load("flat")
+    (tmp_path / "flat.toml").write_text(floorplans.dumps(plan), encoding="utf-8-sig")
+    assert floorplans.load(tmp_path / "flat.toml") == plan
