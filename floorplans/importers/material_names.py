@@ -20,13 +20,13 @@ CAVITY = "air"
 """Material of cavities."""
 
 _MATERIAL_WORDS: Lists[str] = (
-    ("concrete", ("conc", "beton", "hormig", "calcest", "stahlb", "gasbeton", "*beton ")),
     ("brick", (
         "brick", "mason", "masn ", "mauerw", "ziegel", "*ziegel ", "briq", "ladrill", "matton",
         "cmu", "bakst", "tijol", "kalksand", "klinker", "clinker", "macon", "murerv", "tegelst",
         "ytong", "poroton", "porenb", "parpaing", "mamposter", "muratura", "metselw", "tugla",
         "cegl", "blockw", "adobe",
-    )),
+    )),  # before concrete: masonry of concrete blocks is masonry
+    ("concrete", ("conc", "beton", "hormig", "calcest", "stahlb", "gasbeton", "*beton ")),
     ("plasterboard", (
         "plaster", "gyps", "gips", "dryw", "placo", "putz", "cartong", "yeso", "trockenb",
         "gkb", "gk ", "gkf ", "rigips", "*gips", "*putz ", "gwb ", "gyp ",
@@ -74,6 +74,8 @@ def material_named(name: str) -> str | None:
     --------
     >>> material_named("Stahlbeton C30/37"), material_named("Luft")
     ('concrete', None)
+    >>> material_named("Concrete Masonry Units")
+    'brick'
     """
     return first_match(words_of(name), _MATERIAL_WORDS)
 
