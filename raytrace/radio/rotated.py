@@ -34,7 +34,7 @@ class Rotated:
     def __post_init__(self) -> None:
         """Check the axes; raise ValueError where they are not orthogonal unit vectors."""
         off = np.inf
-        if len(self.x_axis) == len(self.z_axis) == 3:
+        if np.shape(self.x_axis) == np.shape(self.z_axis) == (3,):
             axes = np.array([self.x_axis, self.z_axis], dtype=np.float64)
             if (np.abs(axes) <= 1.0 + TOLERANCE).all():
                 off = np.abs(axes @ axes.T - np.eye(2)).max()

@@ -64,7 +64,7 @@ def channel_matrix(
     n = most if n_receivers is None else index(n_receivers)
     if n < most:
         raise ValueError(f"n_receivers = {n}: expected at least {most}, paths reach so many")
-    check_size("channels", 16 * n * len(offsets) * len(receive) * len(transmit))
+    check_size("channels", 16 * n * max(len(offsets), 1) * len(receive) * len(transmit))
     check_size("phases of paths", 32 * len(paths) * (len(offsets) + len(receive) + len(transmit)))
     departing = transmit.response(paths.departure_direction)
     arriving = receive.response(paths.arrival_direction)

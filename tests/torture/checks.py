@@ -15,6 +15,7 @@ from PIL import Image
 
 import floorplans
 from raytrace import RadioMap
+from raytrace.results.checked_hdf5 import open_checked
 from raytrace.results.map_file import is_radio_map
 from rssnav import TrainingResult
 
@@ -47,6 +48,9 @@ def half_files(folder: Path) -> Iterator[str]:
 
 def _read(path: Path) -> None:
     match path.suffix:
+        case ".h5" if "-search-" in path.name:
+            with open_checked(path) as file:
+                assert file.text("key")
         case ".h5":
             (RadioMap if is_radio_map(path) else TrainingResult).load(path)
         case ".png" | ".gif":
