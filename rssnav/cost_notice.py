@@ -69,10 +69,8 @@ def announcement(
     cost = estimate_cost(
         scene, transmitter, grid, config, threads=threads, max_memory_bytes=max_memory_bytes
     )
-    cost = _of_several(cost, n_transmitters)
-    if cost.seconds <= LONG_S and not cost.is_extrapolated:
-        return None
-    return sentence(cost, grid, n_transmitters)
+    cost = _if_long(cost, n_transmitters, LONG_S)
+    return None if cost is None else sentence(cost, grid, n_transmitters)
 
 
 def paths_announcement(
@@ -123,8 +121,8 @@ def points_announcement(
     cost = estimate_cost(
         scene, transmitter, grid, config, threads=threads, max_memory_bytes=max_memory_bytes
     )
-    cost = _of_several(cost, n_transmitters)
-    if cost.seconds <= LONG_PATHS_S and not cost.is_extrapolated:
+    cost = _if_long(cost, n_transmitters, LONG_PATHS_S)
+    if cost is None:
         return None
     memory = _memory(cost.memory_bytes + cost.paths * bytes_a_vertex * (config.max_reflections + 3))
     return (
@@ -152,15 +150,17 @@ def _grid_like(points: Floats) -> Grid:
     return Grid(x, y, float(np.median(points[:, 2])), 1.0)
 
 
-def _of_several(cost: CostEstimate, n: int) -> CostEstimate:
-    """Return the cost of n transmitters of the same cost."""
-    return replace(
+def _if_long(cost: CostEstimate, n: int, long_s: float) -> CostEstimate | None:
+    """Return the cost of n transmitters of the same cost, if it is long or too rough to tell."""
+    of_all = replace(
         cost,
         paths=n * cost.paths,
         seconds=n * cost.seconds,
         seconds_for_beams=n * cost.seconds_for_beams,
         seconds_of_lower_orders=tuple(n * seconds for seconds in cost.seconds_of_lower_orders),
     )
+    is_short = of_all.seconds <= long_s and not of_all.is_extrapolated
+    return None if is_short else of_all
 
 
 def _from(n_transmitters: int) -> str:

@@ -159,12 +159,8 @@ def divided(
         The ends of the parts, both ends of the interval included.
     """
     ends = [low]
-    while high - ends[-1] >= 2 * widths[0]:
+    while high - ends[-1] >= 2 * widths[0] and high - ends[-1] > widths[1]:
         largest = min(widths[1], high - ends[-1] - widths[0])
-        if largest < widths[0]:
-            break
-        if high - ends[-1] <= widths[1]:
-            break
         n_steps = (largest - widths[0]) // step
         ends.append(ends[-1] + widths[0] + step * int(rng.integers(0, n_steps + 1)))
     return [*ends, high]

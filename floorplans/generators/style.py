@@ -31,8 +31,6 @@ HEIGHT_M: dict[str, tuple[float, float]] = {
 }  # fmt: skip
 """Least and largest height from floor to ceiling."""
 
-OF_CORE: tuple[Use, ...] = ("core",)
-WITH_GLASS: tuple[Use, ...] = ("meeting",)
 DARK: tuple[Use, ...] = ("core", "store", "bath")
 """Rooms that need no window."""
 
@@ -79,9 +77,9 @@ class Style:
         if one.is_one_with(other):
             return None
         uses = {one.use, other.use}
-        if uses & set(OF_CORE):
+        if "core" in uses:
             return CORE
-        if uses & set(WITH_GLASS) and "corridor" in uses:
+        if uses == {"meeting", "corridor"}:
             return GLASS_WALL
         return self.interior
 

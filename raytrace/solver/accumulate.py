@@ -107,12 +107,7 @@ def _added_powers(parts: Sequence[Sums]) -> Sums:
     size = np.sqrt(sum(np.abs(part.field) ** 2 for part in parts))
     return first._replace(
         field=size * np.exp(1j * np.angle(first.field)),
-        power=sum_of([part.power for part in parts]),
-        moments=sum_of([part.moments for part in parts]),
-        left_out=sum_of([part.left_out for part in parts]),
+        power=np.sum([part.power for part in parts], axis=0),
+        moments=np.sum([part.moments for part in parts], axis=0),
+        left_out=np.sum([part.left_out for part in parts], axis=0),
     )
-
-
-def sum_of(arrays: Sequence[Floats]) -> Floats:
-    """Sum of arrays of one shape."""
-    return np.sum(arrays, axis=0)

@@ -8,7 +8,6 @@ import numpy as np
 
 from raytrace.arrays import Complexes, Floats, Ints
 from raytrace.kernels.bounds import height_sums
-from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import Guard
 from raytrace.kernels.horizontal_edge_legs import HorizontalEdgeBeams
 from raytrace.kernels.records import Record, new_record, no_record
@@ -58,7 +57,7 @@ class BeamClass(ABC, Generic[Beams]):
         """Find receivers within some of the beams; return how many of the beams were taken."""
 
     @abstractmethod
-    def _evaluate(self, beams: Beams, tables: FieldTables, collector: Collector) -> None:
+    def _evaluate(self, beams: Beams, evaluation: Evaluation, collector: Collector) -> None:
         """Evaluate the paths of all hits."""
 
     @abstractmethod
@@ -109,7 +108,7 @@ class BeamClass(ABC, Generic[Beams]):
         while len(numbers):
             batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
             check_whole(guard, done > 0, HITS)
-            self._evaluate(batch, evaluation.tables, collector)
+            self._evaluate(batch, evaluation, collector)
             numbers = numbers[done:]
         check_whole(guard, True, HITS)
         sums.left_out[np.unique(self._tracing.targets.number)] += left_out
@@ -163,7 +162,7 @@ class BeamClass(ABC, Generic[Beams]):
     def _recorded_again(self, beams: Beams, evaluation: Evaluation, n_paths: int) -> Record:
         """Return up to that many of the paths of all hits."""
         guard, record = self._tracing.guard, new_record(n_paths)
-        self._evaluate(beams, evaluation.tables, self._collector(evaluation, record, guard))
+        self._evaluate(beams, evaluation, self._collector(evaluation, record, guard))
         check_whole(guard, True, PATHS)
         return record
 

@@ -9,7 +9,6 @@ from raytrace.config import TraceConfig
 from raytrace.geometry import edges
 from raytrace.kernels.beam_hits import Hits, hit_points, no_hits
 from raytrace.kernels.beams import FRACTION, ORDER, Tree, grow_tree, no_tree
-from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import Guard
 from raytrace.kernels.horizontal_edge_legs import (
     HorizontalEdgeArrays,
@@ -57,7 +56,7 @@ from raytrace.solver.loss_limits import (
     shadow_of,
     strong_arrivals,
 )
-from raytrace.solver.path_class import PathClass
+from raytrace.solver.path_class import Evaluation, PathClass
 from raytrace.solver.setup import BEAMS, Tracing
 
 RECEIVER_BYTES = 240
@@ -87,10 +86,12 @@ class Reflections(BeamClass[ReflectionBeams]):
         hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits, guard)
         return beams._replace(hits=hits), done
 
-    def _evaluate(self, beams: ReflectionBeams, tables: FieldTables, collector: Collector) -> None:
+    def _evaluate(
+        self, beams: ReflectionBeams, evaluation: Evaluation, collector: Collector
+    ) -> None:
         geometry, leg = self._tracing.geometry, new_leg(beams.tree.link)
         workspace = new_workspace(geometry.max_reflections)
-        sum_reflections(geometry, tables, beams, leg, workspace, collector)
+        sum_reflections(geometry, evaluation.tables, beams, leg, workspace, collector)
 
     def _write_points(
         self, beams: ReflectionBeams, record: Record, points: Floats, steps: Steps
@@ -158,12 +159,13 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
         return beams._replace(hits=hits), done
 
     def _evaluate(
-        self, beams: VerticalEdgeBeams, tables: FieldTables, collector: Collector
+        self, beams: VerticalEdgeBeams, evaluation: Evaluation, collector: Collector
     ) -> None:
-        geometry, leg = self._tracing.geometry, new_leg(beams.tree.link)
+        geometry, tables = self._tracing.geometry, evaluation.tables
+        leg = new_leg(beams.tree.link)
         bounds = EdgeBounds(np.empty(0), np.empty(0))
         if collector.min_power > 0.0 or len(collector.least):
-            shadow = shadow_of(self._tracing.limits, tables, self._edge.wedge.o_slab)
+            shadow = shadow_of(self._tracing.limits, evaluation, self._edge.wedge.o_slab)
             bounds = EdgeBounds(bounds_of_legs(geometry, tables, beams.legs), shadow)
         workspace = new_workspace(geometry.max_reflections)
         sum_vertical_edge(geometry, tables, beams, bounds, leg, workspace, collector)
@@ -272,13 +274,13 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
         return beams._replace(hits=hits, seen=seen), done
 
     def _evaluate(
-        self, beams: HorizontalEdgeBeams, tables: FieldTables, collector: Collector
+        self, beams: HorizontalEdgeBeams, evaluation: Evaluation, collector: Collector
     ) -> None:
         geometry = self._tracing.geometry
         work, shadow = new_edge_workspace(geometry.max_reflections, beams), np.empty(0)
         if collector.min_power > 0.0 or len(collector.least):
-            shadow = shadow_of(self._tracing.limits, tables, self._edge.wedge.o_slab)
-        sum_horizontal_edge(geometry, tables, beams, shadow, work, collector)
+            shadow = shadow_of(self._tracing.limits, evaluation, self._edge.wedge.o_slab)
+        sum_horizontal_edge(geometry, evaluation.tables, beams, shadow, work, collector)
 
     def _write_points(
         self, beams: HorizontalEdgeBeams, record: Record, points: Floats, steps: Steps

@@ -8,21 +8,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from raytrace.arrays import Complexes, Floats, Ints
+from raytrace.arrays import Floats, Ints
 from raytrace.config import TraceConfig
 from raytrace.kernels.bounds import SHEET_POWER, SHEET_POWER_THROUGH_WALLS, WEDGE_POWER
 from raytrace.kernels.edge_losses import EdgeWays
-from raytrace.kernels.field_tables import FieldTables
-from raytrace.kernels.losses import COSINE_BINS, UNLIMITED, Limits
+from raytrace.kernels.losses import UNLIMITED, Limits
 from raytrace.kernels.plan_view import PlanView
 from raytrace.kernels.vertical_edge_legs import LegsIn, VerticalEdgeArrays
 from raytrace.kernels.wedge import new_wedge
 from raytrace.scene import Scene
 from raytrace.solver.path_class import Evaluation
 from raytrace.solver.setup import limits_by_number
-
-INTERPOLATION = 1.001
-"""Bounds on slabs are enlarged by this factor: tables are interpolated between their rows."""
+from raytrace.solver.slab_bounds import reflection_of, slab_bounds, transmission_of
 
 
 class Continuations(NamedTuple):
@@ -105,11 +102,9 @@ def limits_from_transmitter(
     tables, alone = evaluation.tables, is_alone(limits)
     continued = _with_edges(scene, config)[::-1]
     reflectance = slab_bounds(tables, *reflection_of(tables))
-    transmittance, shadow = np.zeros_like(reflectance), np.ones_like(reflectance)
+    transmittance = np.zeros_like(reflectance)
     if len(tables.transmission):
-        te, tm = transmission_of(tables)
-        transmittance, shadow = slab_bounds(tables, te, tm), slab_bounds(tables, 1.0 - te, 1.0 - tm)
-        shadow = shadow if alone else np.maximum(shadow, 1.0)
+        transmittance = slab_bounds(tables, *transmission_of(tables))
     loss = limits.loss._replace(
         is_active=True,
         least=least,
@@ -117,64 +112,19 @@ def limits_from_transmitter(
         wavelength=tables.wavelength,
         reflectance=reflectance,
         transmittance=transmittance,
-        shadow=shadow,
+        shadow=evaluation.shadow if alone else np.maximum(evaluation.shadow, 1.0),
         is_alone=alone,
         roots=np.column_stack([np.ones_like(continued) if alone else continued, continued]),
     )
     return limits._replace(loss=loss)
 
 
-def reflection_of(tables: FieldTables) -> tuple[Complexes, Complexes]:
-    """Tabulated R_te and R_tm (n_slabs, steps + 1) over the cosine of incidence."""
-    return _coefficients(tables, tables.reflection, -1.0)
-
-
-def transmission_of(tables: FieldTables) -> tuple[Complexes, Complexes]:
-    """Tabulated T_te and T_tm (n_slabs, steps + 1), relative to air."""
-    return _coefficients(tables, tables.transmission, 1.0)
-
-
-def _coefficients(tables: FieldTables, table: Floats, sign: float) -> tuple[Complexes, Complexes]:
-    """TE and TM; TE is (the difference of the table) sin^2 + sign TM."""
-    columns = table.reshape(-1, tables.slab_rows, 4)[:, :-1]
-    tm, mix = columns[..., 0] + 1j * columns[..., 1], columns[..., 2] + 1j * columns[..., 3]
-    return mix * (1.0 - np.linspace(0.0, 1.0, columns.shape[1]) ** 2) + sign * tm, tm
-
-
-def slab_bounds(tables: FieldTables, te: Complexes, tm: Complexes) -> Floats:
-    """Largest squared magnitude of either coefficient between intervals of the cosine of incidence.
-
-    Parameters
-    ----------
-    tables
-        Their size.
-    te, tm
-        (n_slabs, steps + 1) coefficients at cosines from 0 to 1.
-
-    Returns
-    -------
-    ndarray
-        (n_slabs, COSINE_BINS, COSINE_BINS), see `losses.LossLimit`.
-    """
-    power = INTERPOLATION * np.maximum(np.abs(tm), np.abs(te)) ** 2
-    each = (tables.slab_rows - 2) // COSINE_BINS
-    steps = [power[:, k * each : (k + 1) * each + 1] for k in range(COSINE_BINS)]
-    within = np.stack([step.max(axis=1) for step in steps], axis=1)
-    found = np.zeros((len(within), COSINE_BINS, COSINE_BINS))
-    for low in range(COSINE_BINS):
-        found[:, low, low:] = np.maximum.accumulate(within[:, low:], axis=1)
-    return found
-
-
-def shadow_of(limits: Limits, tables: FieldTables, slab: int) -> Floats:
+def shadow_of(limits: Limits, evaluation: Evaluation, slab: int) -> Floats:
     """Largest |1 - T'|^2 (COSINE_BINS + 1,) of a sheet's shadow at a cosine of incidence or above.
 
     Where the number of transmissions ends paths, the shadow may also lack the transmitted field.
     """
-    if not len(tables.transmission):
-        return np.ones(COSINE_BINS + 1)
-    te, tm = (part[slab : slab + 1] for part in transmission_of(tables))
-    found = slab_bounds(tables, 1.0 - te, 1.0 - tm)[0, :, -1]
+    found = evaluation.shadow[slab, :, -1]
     found = np.append(found, found[-1])
     return found if is_alone(limits) else np.maximum(found, 1.0)
 

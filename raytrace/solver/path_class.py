@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 from raytrace.arrays import Floats, Ints
@@ -9,6 +10,7 @@ from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.steps import Steps
 from raytrace.kernels.sums import Sums
 from raytrace.results.paths import Paths
+from raytrace.solver.slab_bounds import shadow_bounds
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +27,11 @@ class Evaluation:
 
     tables: FieldTables
     min_power: float = 0.0
+
+    @cached_property
+    def shadow(self) -> Floats:
+        """Bounds on the shadows of sheets, see `slab_bounds.shadow_bounds`."""
+        return shadow_bounds(self.tables)
 
 
 class KeptRecord(NamedTuple):

@@ -119,7 +119,7 @@ def fly_or_reuse(request: SearchRequest, store: TrainingStore) -> SearchFigures:
     path, key = store.folder / store.file_name(name), request.key()
     if store.resume and path.exists():
         try:
-            return _read(path, key, request.runs)
+            return _kept(path, request, key)
         except Hdf5ContentError as error:
             store.notice(f"{path} cannot be used ({error}); searching again")
     figures = request.fly(store.threads)
@@ -135,18 +135,27 @@ def _write(file: h5py.File, figures: SearchFigures, key: str) -> None:
         write_array(file, name, getattr(figures, name), units, long_name)
 
 
-def _read(path: Path, key: str, runs: int) -> SearchFigures:
-    """Read a kept search; raise `Hdf5ContentError` where it is damaged or another one."""
+def read_search(path: Path) -> tuple[str, SearchFigures]:
+    """Read a kept search and its key; raise `Hdf5ContentError` where it is damaged."""
     with open_checked(path) as file:
         if file.text("format") != FORMAT or file.integer("version") != VERSION:
             raise Hdf5ContentError(f"expected format {FORMAT!r}, version {VERSION}")
-        if file.text("key") != key:
-            raise Hdf5ContentError("it was flown with other parameters or in another world")
         arrays: dict[str, Any] = {
-            name: file.array(name, dtype, (runs,), low=0, high=LARGEST)
+            name: file.array(name, dtype, ("runs",), low=0, high=LARGEST)
             for name, (_, _, dtype) in _ARRAYS.items()
         }
+        key = file.text("key")
     figures = SearchFigures(**arrays)
     if (figures.found & figures.false_alarm).any():
         raise Hdf5ContentError("a flight that ended both at the source and elsewhere")
+    return key, figures
+
+
+def _kept(path: Path, request: SearchRequest, key: str) -> SearchFigures:
+    """Read a search that is known to be the one requested; otherwise raise `Hdf5ContentError`."""
+    found, figures = read_search(path)
+    if found != key:
+        raise Hdf5ContentError("it was flown with other parameters or in another world")
+    if len(figures.steps) != request.runs:
+        raise Hdf5ContentError(f"{len(figures.steps)} flights: expected {request.runs}")
     return figures

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable
 from typing import Any
@@ -12,7 +11,6 @@ from bokeh.events import Pan, PanEnd, PanStart, Tap
 from bokeh.models import (
     ColorBar,
     ColumnDataSource,
-    CustomJSHover,
     DataRange1d,
     HoverTool,
     Image,
@@ -32,6 +30,15 @@ from shapely import get_coordinates
 from floorplans import FloorPlan
 from floorplans.pictures.legend import SOURCE, START
 from raytrace import RadioMap
+from rssnav.explorer.hover import (
+    EMPTY_READINGS,
+    READING_ROWS,
+    hovered_layers,
+    map_rows,
+    named,
+    reading_columns,
+    written_in,
+)
 from rssnav.explorer.survey_layer import Residuals
 from rssnav.explorer.tracing import TracedMap
 from rssnav.maps import cells_inside
@@ -55,16 +62,6 @@ MARK_REACH = 0.03
 _EMPTY_LINES: dict[str, list[Any]] = {"xs": [], "ys": []}
 RESIDUALS_DB = 10.0
 """Measured minus traced RSS that has the darkest colour: red for a stronger reading, or blue."""
-
-_EMPTY_READINGS: dict[str, list[float]] = {
-    name: [] for name in ("x", "y", "tx", "measured", "traced", "residual")
-}
-_READING = [
-    ("measured", "@measured{0.0} dBm"),
-    ("traced", "@traced{custom}"),
-    ("difference", "@residual{custom}"),
-    ("transmitter", "@tx"),
-]
 
 _EMPTY_POINTS: dict[str, list[float]] = {"x": [], "y": []}
 
@@ -112,7 +109,7 @@ class MapFigure:
         self._uncovered = ColumnDataSource(dict(_EMPTY_POINTS))
         self._draw_map()
         self._draw_walls(plan, height_m)
-        self._survey = ColumnDataSource(dict(_EMPTY_READINGS))
+        self._survey = ColumnDataSource(dict(EMPTY_READINGS))
         self._draw_survey()
         self._cell = ColumnDataSource(dict(_EMPTY_POINTS))
         self._paths = ColumnDataSource({**_EMPTY_LINES, "colour": []})
@@ -136,7 +133,7 @@ class MapFigure:
             self._mapper.update(low=float(covered.min()), high=float(covered.max()) + 1e-9)
         inside = cells_inside(self._plan, grid)
         self._image.data = {
-            **{name: [values] for name, values in _layers(radio_map, inside).items()},
+            **{name: [values] for name, values in hovered_layers(radio_map, inside).items()},
             "server": [np.zeros(radio_map.rss_dbm.shape) if best is None else best],
             "x": [grid.x[0] - half],
             "y": [grid.y[0] - half],
@@ -144,8 +141,8 @@ class MapFigure:
             "dh": [grid.y[-1] - grid.y[0] + 2 * half],
         }
         names = () if traced is None else traced.servers
-        self._hover.formatters = {**self._hover.formatters, "@server": _named(names)}
-        self._hover.tooltips = _tooltips(radio_map, names)
+        self._hover.formatters = {**self._hover.formatters, "@server": named(names)}
+        self._hover.tooltips = map_rows(radio_map, names)
         uncovered = ~np.isfinite(radio_map.rss_dbm) & inside
         dark = grid.points()[uncovered.ravel()]
         self._uncovered_cells.glyph.update(width=grid.cell_size_m, height=grid.cell_size_m)
@@ -158,7 +155,9 @@ class MapFigure:
 
     def show_survey(self, found: Residuals | None, server: str) -> None:
         """Draw the readings of a transmitter, or of all, coloured by measured minus traced RSS."""
-        self._survey.data = dict(_EMPTY_READINGS) if found is None else _readings(found, server)
+        self._survey.data = (
+            dict(EMPTY_READINGS) if found is None else reading_columns(found, server)
+        )
 
     def show_cell(self, centre: tuple[float, float] | None, side_m: float) -> None:
         """Frame the cell at (x, y) [m], or none."""
@@ -235,7 +234,7 @@ class MapFigure:
         self._hover = HoverTool(
             renderers=[self._picture],
             tooltips=[],
-            formatters={"@rss": _written_in("dBm"), "@delay_spread_s": _written_in("ns", 1e9)},
+            formatters={"@rss": written_in("dBm"), "@delay_spread_s": written_in("ns", 1e9)},
             visible=False,
         )
         self.model.add_tools(self._hover)
@@ -253,8 +252,8 @@ class MapFigure:
             "x", "y", source=self._survey, size=9, line_color="white", line_width=0.8,
             fill_color={"field": "residual", "transform": colours},
         )  # fmt: skip
-        hover = HoverTool(renderers=[readings], tooltips=_READING, visible=False)
-        hover.formatters = {"@traced": _written_in("dBm"), "@residual": _written_in("dB")}
+        hover = HoverTool(renderers=[readings], tooltips=READING_ROWS, visible=False)
+        hover.formatters = {"@traced": written_in("dBm"), "@residual": written_in("dB")}
         self.model.add_tools(hover)
 
     def _draw_walls(self, plan: FloorPlan, height_m: float) -> None:
@@ -377,56 +376,6 @@ def _empty_figure() -> figure:
             axis_label_text_font_style="normal", axis_label_text_color=INK,
         )  # fmt: skip
     return model
-
-
-def _layers(radio_map: RadioMap, inside: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
-    """Layers (n_y, n_x) of a map that the tooltip shows, by name.
-
-    NaN, which no map holds, tells the tooltip that a cell is outside the building or in a column.
-    """
-    layers = {"rss": np.where(inside, radio_map.rss_dbm, np.nan)}
-    if radio_map.delay_spread_s is not None:
-        layers["delay_spread_s"] = np.where(inside, radio_map.delay_spread_s, np.nan)
-    return {**layers, "path_count": radio_map.path_count}
-
-
-def _named(names: tuple[str, ...]) -> CustomJSHover:
-    """Return a tooltip format that names an index; -1 is none."""
-    return CustomJSHover(code=f"return {json.dumps(names)}[value] ?? 'none'")
-
-
-def _readings(found: Residuals, server: str) -> dict[str, Any]:
-    """Data columns of the readings of a transmitter; of all, if there are none of that name."""
-    survey = found.survey
-    names = np.array([t.name for t in survey.transmitters])[survey.transmitter]
-    mine = names == server
-    shown = mine if mine.any() else np.ones(len(survey), dtype=bool)
-    return {
-        "x": survey.points[shown, 0],
-        "y": survey.points[shown, 1],
-        "tx": names[shown],
-        "measured": survey.rss_dbm[shown],
-        "traced": found.predicted_dbm[shown],
-        "residual": found.residual_db[shown],
-    }
-
-
-def _written_in(unit: str, factor: float = 1.0) -> CustomJSHover:
-    """Return a tooltip format with a unit; an infinite number means no path, NaN outside."""
-    return CustomJSHover(
-        code="if (Number.isNaN(value)) return 'outside'; "
-        f"return isFinite(value) ? ({factor!r} * value).toFixed(1) + ' {unit}' : 'no path'"
-    )
-
-
-def _tooltips(radio_map: RadioMap, servers: tuple[str, ...] = ()) -> list[tuple[str, str]]:
-    """Rows of the tooltip."""
-    rows = [("RSS", "@rss{custom}"), ("paths", "@path_count{0,0}")]
-    if radio_map.delay_spread_s is not None:
-        rows.append(("delay spread", "@delay_spread_s{custom}"))
-    if servers:
-        rows.append(("transmitter", "@server{custom}"))
-    return [*rows, ("at", "($x{0.0}, $y{0.0}) m")]
 
 
 def _mark_positions(plan: FloorPlan) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 
 import floorplans
 from floorplans import FloorPlan, PlanError
-from raytrace import SceneError
 from rssnav.explorer.background import NewestOnly, Ticket
 from rssnav.explorer.fair_turns import TabTurns
 from rssnav.explorer.file_names import shown_name
 from rssnav.explorer.limits import Limits
-from rssnav.explorer.tracing import LatestScene, MapSettings, end_of_time
+from rssnav.explorer.tracing import LatestScene, MapSettings, attempted, end_of_time
 from rssnav.explorer.transmitters import without_pattern_files
 from rssnav.measurements.survey import Survey, SurveyError
 from rssnav.measurements.survey_csv import read_survey, transmitters_of
@@ -113,13 +112,13 @@ class SurveyTracer:
             settings.antenna,
             max_memory_bytes=self._limits.trace_bytes,
         )
-        found, problem = None, ""
-        try:
+
+        def compare() -> Residuals:
             stop = end_of_time(ticket, self._limits.map_s)
             traced = traced_dbm(self._scenes.of(plan), survey, traced_with, stop=stop)
-            found = Residuals.of(survey, traced)
-        except (SceneError, ValueError, TimeoutError, MemoryError) as error:
-            problem = str(error)
+            return Residuals.of(survey, traced)
+
+        found, problem = attempted(compare)
         ticket.check()
         self.latest, self.problem = found, problem
 

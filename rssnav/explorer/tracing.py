@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from threading import Lock
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,6 @@ from raytrace import (
     PathStatistics,
     RadioMap,
     Scene,
-    SceneError,
     TraceConfig,
     Transmitter,
     compute_radio_maps,
@@ -35,6 +35,10 @@ from rssnav.scenes import PlanScene
 from rssnav.transmitters import FREQUENCY_HZ, POWER_DBM, SOURCE, Sending
 
 Position = tuple[float, float, float]
+T = TypeVar("T")
+
+TRACE_ERRORS = (ValueError, TimeoutError, MemoryError)
+"""What a trace may raise; errors of plans and scenes are among the first."""
 
 
 @dataclass(frozen=True)
@@ -229,6 +233,14 @@ def end_of_time(ticket: Ticket, seconds: float) -> Callable[[], bool]:
     return stop
 
 
+def attempted(trace: Callable[[], T]) -> tuple[T | None, str]:
+    """Return what a trace gives, or None and why it failed."""
+    try:
+        return trace(), ""
+    except TRACE_ERRORS as error:
+        return None, str(error)
+
+
 class MapTracer:
     """Traces the newest requested map: reflections first, then all paths.
 
@@ -280,7 +292,7 @@ class MapTracer:
                 kept = self._stage(plan, settings, True, ticket)
                 self._cache.put(kept)
             self._finish(kept, ticket)
-        except (PlanError, SceneError, ValueError, TimeoutError, MemoryError) as error:
+        except TRACE_ERRORS as error:
             ticket.check()
             self.problem = str(error)
         self.progress = None
@@ -291,7 +303,7 @@ class MapTracer:
         try:
             dragged = replace(settings.transmitter(plan), position=source)
             self._finish(self._stage(plan, settings, False, ticket, dragged), ticket)
-        except (PlanError, SceneError, ValueError, TimeoutError, MemoryError):
+        except TRACE_ERRORS:
             ticket.check()
         self.progress = None
 
@@ -368,8 +380,7 @@ class PathFinder:
     def _trace(
         self, plan: FloorPlan, settings: MapSettings, receiver: Position, ticket: Ticket
     ) -> None:
-        found, problem = None, ""
-        try:
+        def find() -> CellPaths:
             paths = trace_paths(
                 self._scenes.of(plan),
                 settings.transmitter(plan),
@@ -379,8 +390,8 @@ class PathFinder:
                 stop=end_of_time(ticket, self._limits.map_s),
                 max_memory_bytes=self._limits.trace_bytes,
             )
-            found = CellPaths(plan, settings, receiver, paths)
-        except (SceneError, ValueError, TimeoutError, MemoryError) as error:
-            problem = str(error)
+            return CellPaths(plan, settings, receiver, paths)
+
+        found, problem = attempted(find)
         ticket.check()
         self.latest, self.problem, self.busy = found, problem, False

@@ -15,9 +15,9 @@ from PIL import Image
 
 import floorplans
 from raytrace import RadioMap
-from raytrace.results.checked_hdf5 import open_checked
 from raytrace.results.map_file import is_radio_map
 from rssnav import TrainingResult
+from rssnav.experiments.search_store import read_search
 
 VOLATILE = ("_time_s", "_cpu_s", "cpu_s")
 """Ends of names of measured times, which no two runs share."""
@@ -49,8 +49,7 @@ def half_files(folder: Path) -> Iterator[str]:
 def _read(path: Path) -> None:
     match path.suffix:
         case ".h5" if "-search-" in path.name:
-            with open_checked(path) as file:
-                assert file.text("key")
+            read_search(path)
         case ".h5":
             (RadioMap if is_radio_map(path) else TrainingResult).load(path)
         case ".png" | ".gif":

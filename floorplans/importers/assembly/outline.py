@@ -11,10 +11,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPoint, Polygon
-from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
 from floorplans.importers.assembly.outline_gaps import gap_links, link_lengths
+from floorplans.importers.assembly.wall_network import ON_EDGE_M, Lines, Network, not_within
 from floorplans.importers.defaults import CLOSED_GAP_M
 from floorplans.repair.geometry import Change
 from floorplans.repair.walls import repair_walls, split_at_junctions
@@ -28,10 +28,8 @@ _MOSTLY_OPEN = 0.5
 """Fraction of the walls' length below which what is enclosed is a room, not the building."""
 _NARROW_M = 0.3
 """A narrower region is a gap between walls, not a building [m]."""
-_ON_EDGE_M = 1e-5
 
 Link = tuple[tuple[float, float], tuple[float, float]]
-Lines = NDArray[np.object_]
 
 
 @dataclass(frozen=True)
@@ -54,45 +52,6 @@ class Storey:
     changes: tuple[Change, ...] = ()
     gaps: tuple[Link, ...] = ()
     enclosed: float = 1.0
-
-
-class _Network:
-    """Lines in pieces that meet only at their ends, which are found once for any links.
-
-    Attributes
-    ----------
-    lines : (n,) shapely lines
-    """
-
-    def __init__(self, lines: Lines, pieces: Lines | None = None) -> None:
-        self.lines = lines
-        self._pieces = _noded(lines) if pieces is None else pieces
-        self._tree = shapely.STRtree(self._pieces)
-
-    def around(self, region: Polygon) -> _Network:
-        """Lines that bound a region or lie outside: those within cannot extend it."""
-        return _Network(_not_within(self.lines, region), _not_within(self._pieces, region))
-
-    def faces(self, links: NDArray[np.float64]) -> Lines:
-        """Smallest regions that the lines and links enclose."""
-        closing = np.array(shapely.linestrings(links), dtype=np.object_)
-        touched = np.unique(self._tree.query(closing, "intersects")[1])
-        met = _noded(np.concatenate([self._pieces[touched], closing]))
-        pieces = np.concatenate([np.delete(self._pieces, touched), met])
-        return np.array(shapely.get_parts(shapely.polygonize(pieces)), dtype=np.object_)
-
-    def is_edged(self, face: BaseGeometry, others: Lines) -> bool:
-        """Whether all lines in or on a face are edges of other faces too."""
-        wide = face.buffer(_ON_EDGE_M)
-        pieces = self._pieces[self._tree.query(wide, "contains")]
-        middles = shapely.line_interpolate_point(pieces, 0.5, normalized=True)
-        shared = shapely.STRtree(others).query(middles, "dwithin", distance=TOLERANCE_M)[0]
-        return len(np.unique(shared)) == len(pieces)
-
-
-def _noded(lines: Lines) -> Lines:
-    """Lines split where they meet."""
-    return np.array(shapely.get_parts(shapely.union_all(lines)), dtype=np.object_)
 
 
 @dataclass(frozen=True)
@@ -153,14 +112,14 @@ def outline_of(walls: Sequence[Wall], given: Polygon | None) -> Polygon | None:
     given : shapely.geometry.Polygon or None
         As in `find_outline`.
     """
-    network = _Network(centre_lines(split_at_junctions(walls)))
+    network = Network(centre_lines(split_at_junctions(walls)))
     region = _largest_face(network, np.empty((0, 2, 2)), given)
     return None if region is None else _simplified(region)
 
 
 def on_edge(walls: Sequence[Wall], outline: Polygon) -> NDArray[np.bool_]:
     """Which walls lie on the outline, (n,)."""
-    edge = outline.boundary.buffer(_ON_EDGE_M)
+    edge = outline.boundary.buffer(ON_EDGE_M)
     shapely.prepare(edge)
     return np.array(shapely.covers(edge, centre_lines(walls)), dtype=np.bool_)
 
@@ -173,7 +132,7 @@ def _enclosed_region(
     Under a strict limit a building is open where the default limit would enclose more of it;
     otherwise only where hardly any of the walls are enclosed, in whatever number of buildings.
     """
-    network = _Network(lines)
+    network = Network(lines)
     closed = _region(lines, network, np.empty((0, 2, 2)), given)
     if closed and closed.enclosed > 1 - _ENOUGH:
         return closed
@@ -193,15 +152,9 @@ def _enclosed_region(
     return wider or _hull(lines)
 
 
-def _not_within(lines: Lines, region: Polygon) -> Lines:
-    inner = region.buffer(-_ON_EDGE_M)
-    shapely.prepare(inner)
-    return lines[~shapely.contains_properly(inner, lines)]
-
-
 def _best_region(
     lines: Lines,
-    outer: _Network,
+    outer: Network,
     links: NDArray[np.float64],
     given: Polygon | None,
     limit_m: float,
@@ -213,7 +166,7 @@ def _best_region(
         if region and given is None:
             outer = outer.around(region.polygon)
             links = shapely.get_coordinates(
-                _not_within(np.array(shapely.linestrings(links)), region.polygon)
+                not_within(np.array(shapely.linestrings(links)), region.polygon)
             ).reshape(-1, 2, 2)
         if region and (best is None or region.enclosed > best.enclosed + _ENOUGH):
             best = region
@@ -223,7 +176,7 @@ def _best_region(
 
 
 def _region(
-    lines: Lines, outer: _Network, links: NDArray[np.float64], given: Polygon | None
+    lines: Lines, outer: Network, links: NDArray[np.float64], given: Polygon | None
 ) -> _Region | None:
     """Region that the outer lines and links enclose, and how much of all lines it holds."""
     polygon = _largest_face(outer, links, given)
@@ -242,12 +195,12 @@ def _simplified(polygon: Polygon) -> Polygon:
     return simple
 
 
-def _is_closed(network: _Network, links: NDArray[np.float64], region: _Region) -> bool:
+def _is_closed(network: Network, links: NDArray[np.float64], region: _Region) -> bool:
     """Whether most of the walls outside a region are part of other closed buildings."""
     lines = network.lines
     widths_m = [dist(*gap) for gap in region.gaps]
     faces = network.faces(links[link_lengths(links) <= max(widths_m, default=0.0)])
-    wide = shapely.coverage_union_all(faces).buffer(_ON_EDGE_M)
+    wide = shapely.coverage_union_all(faces).buffer(ON_EDGE_M)
     shapely.prepare(wide)
     lengths_m = shapely.length(lines)
     return float(lengths_m[shapely.covers(wide, lines)].sum()) > _MOSTLY_OPEN * lengths_m.sum()
@@ -263,7 +216,7 @@ def _hull(lines: Lines) -> _Region:
         )
     ends = shapely.get_coordinates(lines)
     sides = (
-        ends[np.array(shapely.dwithin(shapely.linestrings(side), shapely.points(ends), _ON_EDGE_M))]
+        ends[np.array(shapely.dwithin(shapely.linestrings(side), shapely.points(ends), ON_EDGE_M))]
         for side in pairwise(hull.exterior.coords)
     )
     starts = np.array(hull.exterior.coords)[:-1]
@@ -288,7 +241,7 @@ def _open_sections(region: Polygon, lines: Lines) -> list[Link]:
 
 
 def _largest_face(
-    network: _Network, links: NDArray[np.float64], given: Polygon | None
+    network: Network, links: NDArray[np.float64], given: Polygon | None
 ) -> Polygon | None:
     """Largest connected region that lines and links enclose; None if there is none."""
     faces = network.faces(links)
@@ -306,7 +259,7 @@ def _largest_face(
     return Polygon(largest.exterior, holes)
 
 
-def _without_recesses(region: Polygon, network: _Network) -> Polygon:
+def _without_recesses(region: Polygon, network: Network) -> Polygon:
     """Region without the parts behind a gap that hold no wall of their own, such as a niche.
 
     A part stays that connects others, such as a corridor that is open at its ends.
@@ -315,7 +268,7 @@ def _without_recesses(region: Polygon, network: _Network) -> Polygon:
     if not gaps:
         return region
     faces = network.faces(np.array(gaps))
-    inner = region.buffer(_ON_EDGE_M)
+    inner = region.buffer(ON_EDGE_M)
     shapely.prepare(inner)
     faces = faces[shapely.covers(inner, faces)]
     behind = shapely.STRtree(faces).query(_middles(gaps), "dwithin", distance=TOLERANCE_M)[1]
@@ -337,7 +290,7 @@ def _middles(sections: Sequence[Link]) -> Lines:
 
 def _length_inside(lines: Lines, region: Polygon) -> float:
     """Length of the pieces in a region or on its edge [m]."""
-    wide = region.buffer(_ON_EDGE_M)
+    wide = region.buffer(ON_EDGE_M)
     shapely.prepare(wide)
     return float(shapely.length(lines[shapely.covers(wide, lines)]).sum())
 
@@ -348,7 +301,7 @@ def _closing(pieces: Sequence[Wall], links: Sequence[Link]) -> list[Wall]:
     longest = max(pieces, key=lambda wall: wall.length_m)
     closing: list[Wall] = []
     for start, end in links:
-        near = tree.query(MultiPoint([start, end]), "dwithin", distance=_ON_EDGE_M).tolist()
+        near = tree.query(MultiPoint([start, end]), "dwithin", distance=ON_EDGE_M).tolist()
         touching = [pieces[i] for i in near]
         like = max(touching or [longest], key=lambda wall: wall.length_m)
         closing.append(replace(like, start=start, end=end, openings=()))
@@ -357,7 +310,7 @@ def _closing(pieces: Sequence[Wall], links: Sequence[Link]) -> list[Wall]:
 
 def _inside(pieces: Sequence[Wall], outline: Polygon, changes: list[Change]) -> list[Wall]:
     """Walls inside or on the outline; the others are dropped and recorded."""
-    wide = outline.buffer(_ON_EDGE_M)
+    wide = outline.buffer(ON_EDGE_M)
     shapely.prepare(wide)
     kept = shapely.covers(wide, centre_lines(pieces))
     outside = [wall for wall, stays in zip(pieces, kept, strict=True) if not stays]

@@ -94,12 +94,7 @@ def moved_curve(curve: Curve, matrix: Matrix44) -> Curve:
     def moved(points: Iterable[Point]) -> tuple[Point, ...]:
         return tuple(map(_flat, matrix.transform_vertices([(x, y, 0.0) for x, y in points])))
 
-    swing = curve.swing
-    if swing is not None:
-        hinge, start, end = moved((swing.hinge, *swing.ends))
-        swing = Swing(hinge, (start, end))
-    holes = tuple(moved(hole) for hole in curve.holes)
-    return replace(curve, points=moved(curve.points), swing=swing, holes=holes)
+    return _mapped(curve, moved)
 
 
 def scaled_curve(curve: Curve, factor: float) -> Curve:
@@ -108,14 +103,17 @@ def scaled_curve(curve: Curve, factor: float) -> Curve:
     def scaled(points: Iterable[Point]) -> tuple[Point, ...]:
         return tuple((x * factor, y * factor) for x, y in points)
 
+    return replace(_mapped(curve, scaled), width=curve.width * factor)
+
+
+def _mapped(curve: Curve, mapping: Callable[[Iterable[Point]], tuple[Point, ...]]) -> Curve:
+    """Map all points of a curve."""
     swing = curve.swing
     if swing is not None:
-        hinge, start, end = scaled((swing.hinge, *swing.ends))
+        hinge, start, end = mapping((swing.hinge, *swing.ends))
         swing = Swing(hinge, (start, end))
-    holes = tuple(scaled(hole) for hole in curve.holes)
-    return Curve(
-        scaled(curve.points), curve.closed, curve.filled, swing, holes, curve.width * factor
-    )
+    holes = tuple(mapping(hole) for hole in curve.holes)
+    return replace(curve, points=mapping(curve.points), swing=swing, holes=holes)
 
 
 def chord_step_deg(radius: float, tolerance: float) -> float:

@@ -14,7 +14,7 @@ from floorplans.importers.draft import RawWall
 from floorplans.importers.ifc.curves import Entity
 from floorplans.importers.ifc.materials import Materials
 from floorplans.importers.ifc.shapes import Scale
-from floorplans.importers.ifc.walls import MAX_FOOT_M, MIN_TOP_M, ReadWall, bodies_of_parts
+from floorplans.importers.ifc.walls import ReadWall, bodies_of_parts, top_on_floor
 
 MIN_SIDE_M = 0.15
 """Thinner columns, such as posts of steel, are left out [m]."""
@@ -35,9 +35,8 @@ def read_column(
         Those of the model.
     """
     parts = bodies_of_parts(column, scale)
-    top_m = max((body.z_max - floor_m for body in parts), default=0.0)
-    foot_m = min((body.z_min - floor_m for body in parts), default=0.0)
-    if top_m < MIN_TOP_M or foot_m > MAX_FOOT_M:
+    top_m = top_on_floor(parts, floor_m) if parts else None
+    if top_m is None:
         return None
     around = shapely.union_all([body.footprint for body in parts]).convex_hull
     around = around.simplify(scale.chord_m)

@@ -57,9 +57,8 @@ def read_wall(wall: Entity, floor_m: float, scale: Scale, materials: Materials) 
         Those of the model.
     """
     parts = bodies_of_parts(wall, scale)
-    top_m = max((body.z_max - floor_m for body in parts), default=np.inf)
-    foot_m = min((body.z_min - floor_m for body in parts), default=0.0)
-    if top_m < MIN_TOP_M or foot_m > MAX_FOOT_M:
+    top_m = top_on_floor(parts, floor_m) if parts else np.inf
+    if top_m is None:
         return None
     axis = axis_points(wall, scale)
     footprint = shapely.union_all([body.footprint for body in parts])
@@ -90,6 +89,20 @@ def read_filling(filling: Entity, floor_m: float, scale: Scale) -> RawOpening | 
         (float(x), float(y)), width_m, _kind(filling), (float(along[0]), float(along[1])),
         sill_m, sill_m + height_m,
     )  # fmt: skip
+
+
+def top_on_floor(parts: Sequence[Body], floor_m: float) -> float | None:
+    """Height of the top of bodies, at least one, over a floor [m]; None if they do not stand on it.
+
+    Parameters
+    ----------
+    parts : sequence of Body
+    floor_m : float
+        Elevation of the floor [m].
+    """
+    top_m = max(body.z_max for body in parts) - floor_m
+    foot_m = min(body.z_min for body in parts) - floor_m
+    return None if top_m < MIN_TOP_M or foot_m > MAX_FOOT_M else top_m
 
 
 def bodies_of_parts(element: Entity, scale: Scale) -> list[Body]:

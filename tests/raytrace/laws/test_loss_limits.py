@@ -30,7 +30,7 @@ from raytrace.kernels.losses import COSINE_BINS
 from raytrace.kernels.wedge import Wedge, new_wedge
 from raytrace.radio.materials import MATERIALS, Slab
 from raytrace.radio.tables import field_tables
-from raytrace.solver.loss_limits import reflection_of, slab_bounds, transmission_of
+from raytrace.solver.slab_bounds import reflection_of, slab_bounds, transmission_of
 
 MOST = 20
 """More transmissions than any path of the plans has."""
