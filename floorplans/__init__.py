@@ -15,6 +15,7 @@ metres, z is the height above the floor.
 from floorplans.errors import PlanError
 from floorplans.frame import PlanFrame
 from floorplans.generators import generate
+from floorplans.generators.regular_office import generate_office
 from floorplans.georeference import GeoOrigin
 from floorplans.loading import builtin_names, load, loads, save
 from floorplans.materials import (
@@ -25,7 +26,6 @@ from floorplans.materials import (
     PlanMaterial,
 )
 from floorplans.mesh import SheetMaterial, WallMesh
-from floorplans.office import generate_office
 from floorplans.plan import FloorPlan
 from floorplans.toml.writer import dumps
 from floorplans.transmitters import PlanTransmitter
