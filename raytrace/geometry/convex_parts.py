@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 
 from raytrace.arrays import Floats, Ints
+from raytrace.errors import SceneError
 from raytrace.geometry.chains import Vertex
 from raytrace.geometry.sheets import COINCIDENT_M
 from raytrace.kernels.plan_view import GRAZING_M
@@ -16,6 +17,9 @@ Edge = tuple[int, int]
 
 MOST_FLIPS = 10
 """Flips per flat triangle."""
+
+FLAT = 0.1
+"""Sine below which the shortest edge of a triangle is along its longest; a needle is not flat."""
 
 _MANY = 64
 """Corners from which on edges are not compared with the corners of their own ring."""
@@ -95,9 +99,12 @@ def _flip_flat(triangles: list[Ring], vertices: Floats) -> None:
 
 
 def _is_flat(triangle: Ring, vertices: Floats) -> bool:
+    """Whether the corner opposite the longest edge lies on it, between its ends."""
     a, b, c = vertices[_longest_edge_first(triangle, vertices)]
     along, to_c = b - a, c - a
-    return bool(abs(along[0] * to_c[1] - along[1] * to_c[0]) < COINCIDENT_M * np.hypot(*along))
+    height = abs(along[0] * to_c[1] - along[1] * to_c[0]) / np.hypot(*along)
+    shortest = min(np.hypot(*to_c), np.hypot(*(c - b)))
+    return bool(height < min(COINCIDENT_M, FLAT * shortest))
 
 
 def _longest_edge_first(triangle: Ring, vertices: Floats) -> Ring:
@@ -201,6 +208,9 @@ class _Parts:
             ring, edge = [part.first[0]], part.first
             while edge[1] != ring[0]:
                 ring.append(edge[1])
+                if len(ring) > len(self._vertices):
+                    x, y = self._vertices[ring[0]]
+                    raise SceneError(f"walls lie too near each other to tell apart at ({x:g}, {y:g})")
                 edge = (edge[1], self._next[edge])
             found.append(ring)
         return found

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
-from buildings import CONCRETE, GLASS, Building, box, door, wall
+from buildings import CONCRETE, GLASS, Building, box, door, wall, window
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -91,6 +91,16 @@ def test_walls_off_by_rounding_are_one_wall() -> None:
     check_cells(building.scene)
     check_walls(building)
     assert len(building.scene.view.cell_edges) - 1 == 3
+
+
+@pytest.mark.parametrize("width_m", [5e-7, 1e-6, 1.5e-6, 2e-6, 1e-5])
+@pytest.mark.parametrize("at_m", [2.1, 2.5, 3.0])
+@pytest.mark.parametrize("lean_m", [0.0, 3e-4])
+def test_openings_about_as_narrow_as_the_tolerance(width_m, at_m, lean_m) -> None:
+    holes = door(1.0, 2.0), window(at_m, at_m + width_m)
+    building = box(6.0, 4.0, *wall((3.0, 0.0), (3.0 + lean_m, 4.0), *holes))
+    check_cells(building.scene)
+    check_walls(building)
 
 
 @pytest.mark.parametrize("turn_deg", [11.0, 123.4])
