@@ -210,7 +210,7 @@ class _Parts:
                 ring.append(edge[1])
                 if len(ring) > len(self._vertices):
                     x, y = self._vertices[ring[0]]
-                    raise SceneError(f"walls lie too near each other to tell apart at ({x:g}, {y:g})")
+                    raise SceneError(f"walls too close to tell apart at ({x:g}, {y:g})")
                 edge = (edge[1], self._next[edge])
             found.append(ring)
         return found
