@@ -23,7 +23,7 @@ from raytrace.results.paths import Paths
 from raytrace.results.step_lanes import gains_of
 from raytrace.scene import Scene
 from raytrace.solver.dynamic_range import prepare_within_range
-from raytrace.solver.evaluation import evaluations_of
+from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.kept_paths import KeptPaths, keep_paths
 from raytrace.solver.workers import Stop, Workers
@@ -61,9 +61,7 @@ def evaluate_paths(
     """
     if paths.steps is None:
         raise ValueError("these paths have no steps: expected paths that trace_paths found")
-    tables = tables_of_polarisations(
-        transmitter, slabs, receive_antenna=receive_antenna, through_walls=True
-    )
+    tables = tables_of_polarisations(transmitter, slabs, receive_antenna=receive_antenna)
     gain, pairs = gains_of(tables, paths.steps)
     return replace(paths, gain=gain, pair_gains=pairs).with_bounded_gain()
 
@@ -197,12 +195,12 @@ def trace_points(
     if not 0.0 <= max_left_out < 1.0:
         raise ValueError(f"max_left_out = {max_left_out}: expected a fraction from 0 to below 1")
     config = config or TraceConfig()
-    evaluations = evaluations_of(scene.slabs, transmitter, config, receive_antenna)
+    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(threads, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
         tracing = workers.run(
-            prepare_within_range, scene, transmitter.position, points, config, guard, evaluations[0]
+            prepare_within_range, scene, transmitter.position, points, config, guard, evaluation
         )
         classes = path_classes(tracing.shared_by(workers.n))
-        kept = keep_paths(workers, classes, evaluations, len(points), max_left_out, tracing.guard)
+        kept = keep_paths(workers, classes, evaluation, len(points), max_left_out, tracing.guard)
     return TracedPoints(scene.slabs, transmitter, receive_antenna, kept)

@@ -3,8 +3,7 @@
 import platform
 import time
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping
 from importlib.metadata import version
 from typing import Any
 
@@ -19,16 +18,15 @@ from raytrace.kernels.sums import Sums
 from raytrace.memory import memory_limit
 from raytrace.radio.antennas import Antenna, HalfWaveDipole
 from raytrace.radio.transmitter import Transmitter
-from raytrace.results.layers import layers_of, received_dbm
+from raytrace.results.layers import coherent_power, layers_of, received_dbm
 from raytrace.results.paths import Paths
 from raytrace.results.radio_map import RadioMap
-from raytrace.results.step_lanes import gains_of
 from raytrace.results.transmitter_maps import TransmitterMaps
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import Progress, sum_paths
 from raytrace.solver.beam_class import COPIES_OF_PATHS
 from raytrace.solver.dynamic_range import prepare_within_range
-from raytrace.solver.evaluation import evaluations_of
+from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import cells_bytes, path_classes
 from raytrace.solver.limits import taking
 from raytrace.solver.path_class import Evaluation
@@ -38,7 +36,7 @@ from raytrace.solver.workers import Stop, Workers
 AT_ONCE = 16
 """Lists of the strongest paths that are kept before they are joined."""
 
-TRACER_VERSION = 6
+TRACER_VERSION = 7
 """Grows whenever the same scene would give another map."""
 
 
@@ -89,38 +87,26 @@ def trace_paths(
     if strongest is not None and strongest < 1:
         raise ValueError(f"strongest = {strongest}: expected at least 1, or None for all paths")
     config = config or TraceConfig()
-    evaluations = evaluations_of(scene.slabs, transmitter, config, receive_antenna)
+    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(1, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
         position = transmitter.position
         tracing = workers.run(
-            prepare_within_range, scene, position, receivers, config, guard, evaluations[0]
+            prepare_within_range, scene, position, receivers, config, guard, evaluation
         )
-        return workers.run(_list_paths, tracing, evaluations, strongest)
+        return workers.run(_list_paths, tracing, evaluation, strongest)
 
 
-def _list_paths(
-    tracing: Tracing, evaluations: Sequence[Evaluation], strongest: int | None
-) -> Paths:
+def _list_paths(tracing: Tracing, evaluation: Evaluation, strongest: int | None) -> Paths:
     found: list[Paths] = []
-    of_class = strongest if len(evaluations) == 1 else None
     for path_class in path_classes(tracing):
-        listed = path_class.list_paths(evaluations[0], of_class)
-        found.append(_with_added_powers(listed, evaluations))
+        found.append(path_class.list_paths(evaluation, strongest))
         if strongest is not None and len(found) == AT_ONCE:
             found = [_ordered(found).strongest(2 * strongest)]
         most_bytes = COPIES_OF_PATHS * sum(paths.vertices.nbytes for paths in found)
         taking(tracing.guard, most_bytes, "the paths")
     paths = _ordered(found)
     return paths if strongest is None else paths.strongest(strongest)
-
-
-def _with_added_powers(paths: Paths, evaluations: Sequence[Evaluation]) -> Paths:
-    """Return paths whose powers are the sums of those of several evaluations."""
-    if len(evaluations) == 1 or paths.steps is None or not len(paths):
-        return paths
-    gain, pairs = gains_of([evaluation.tables for evaluation in evaluations], paths.steps)
-    return replace(paths, gain=gain, pair_gains=pairs)
 
 
 def _ordered(found: list[Paths]) -> Paths:
@@ -177,19 +163,18 @@ def compute_radio_map(
     """
     started = time.perf_counter()
     config = config or TraceConfig()
-    evaluations = evaluations_of(scene.slabs, transmitter, config, receive_antenna)
+    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
     with watched_compilation() as compilation, Workers(threads, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
-        needed_bytes = len(evaluations) * cells_bytes(
-            scene, grid.x.size * grid.y.size, config, workers.n
-        )
+        n_cells = grid.x.size * grid.y.size
+        needed_bytes = cells_bytes(scene, n_cells, config, workers.n, evaluation.n_pairs)
         guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
         points = grid.points()
         position = transmitter.position
         tracing = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluations[0]
+            prepare_within_range, scene, position, points, config, guard, evaluation
         )
-        sums = _sum_paths(workers, tracing, evaluations, progress)
+        sums = _sum_paths(workers, tracing, evaluation, progress)
     straight_m = np.linalg.norm(points - np.array(transmitter.position), axis=1)
     _warn_of_near_cells(sums, points)
     layers = layers_of(sums, straight_m, transmitter.power_dbm)
@@ -302,16 +287,16 @@ def received_power(
     config = config or TraceConfig()
     if not len(points):
         return np.empty(0)
-    evaluations = evaluations_of(scene.slabs, transmitter, config, receive_antenna)
+    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(threads, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
-        needed_bytes = len(evaluations) * cells_bytes(scene, len(points), config, workers.n)
+        needed_bytes = cells_bytes(scene, len(points), config, workers.n, evaluation.n_pairs)
         guard = taking(guard, needed_bytes, f"{len(points)} points")
         position = transmitter.position
         tracing = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluations[0]
+            prepare_within_range, scene, position, points, config, guard, evaluation
         )
-        sums = _sum_paths(workers, tracing, evaluations, progress)
+        sums = _sum_paths(workers, tracing, evaluation, progress)
     return received_dbm(sums.power, transmitter.power_dbm)
 
 
@@ -326,18 +311,18 @@ def _positions(points: Floats, name: str) -> Floats:
 def _sum_paths(
     workers: Workers,
     tracing: Tracing,
-    evaluations: Sequence[Evaluation],
+    evaluation: Evaluation,
     progress: Progress | None,
 ) -> Sums:
     """Sum all paths at each receiver of a tracing."""
     classes = path_classes(tracing.shared_by(workers.n))
     max_paths = tracing.config.max_paths
-    return sum_paths(workers, classes, evaluations, max_paths=max_paths, progress=progress)
+    return sum_paths(workers, classes, [evaluation], max_paths=max_paths, progress=progress)[0]
 
 
 def _warn_of_near_cells(sums: Sums, points: Floats) -> None:
     """Warn of cells in which the far field of the paths would exceed what is transmitted."""
-    near = np.flatnonzero(np.maximum(sums.power, np.abs(sums.field) ** 2) > 1.0)
+    near = np.flatnonzero(np.maximum(sums.power, coherent_power(sums)) > 1.0)
     if len(near):
         x, y, z = points[near[0]]
         warnings.warn(

@@ -1,10 +1,13 @@
 """How the kernels are compiled."""
 
+import inspect
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba.core import types
+from numba.extending import overload
 
 from raytrace.kernels import vectors as vectors  # registers the types with numba
 from raytrace.kernels.cache import keep_compiled
@@ -51,3 +54,30 @@ def jit(
         return dispatcher
 
     return compiled
+
+
+def chosen_by_type(field: str, absent: Function, present: Function) -> Callable[[Function], None]:
+    """Let kernels call one of two functions for another, by the type of its first argument.
+
+    Numba types both branches of an ``if``; this compiles only what is called.
+
+    Parameters
+    ----------
+    field
+        Of the first argument, a NamedTuple.
+    absent, present
+        What is called where the field is None, and where it is not; with the same parameters as the
+        function. They are inlined.
+    """
+    options: Any = {"nogil": True, "error_model": "numpy", "forceinline": True, "_nrt": False}
+
+    def register(function: Function) -> None:
+        def choose(*arguments: Any) -> Callable[..., Any]:
+            fields: Any = arguments[0]
+            is_absent = fields.types[fields.fields.index(field)] == types.none
+            return absent if is_absent else present
+
+        choose.__signature__ = inspect.signature(function)  # pyright: ignore[reportFunctionMemberAccess]
+        overload(function, jit_options=options, strict=False)(choose)
+
+    return register

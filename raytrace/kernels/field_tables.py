@@ -21,6 +21,8 @@ from raytrace.kernels.lanes import (
     minimum,
 )
 
+Unknown = tuple[float, float]
+
 
 class FieldTables(NamedTuple):
     """Materials, antennas and special functions at one frequency.
@@ -54,6 +56,10 @@ class FieldTables(NamedTuple):
         empty where `transmit` and `receive` are used.
     azimuths
         Number of azimuths in `patterns`.
+    unknown
+        Where the polarisation of an antenna is unknown: of transmitter and receiver, the amplitude
+        of either component, 0 where it is known (docs/theory.md, eq. 48). Otherwise None. Kernels
+        are compiled for each of the two.
     """
 
     wavelength: float
@@ -68,6 +74,7 @@ class FieldTables(NamedTuple):
     receive: Floats
     patterns: tuple[Floats, Floats]
     azimuths: int
+    unknown: Unknown | None = None
 
 
 @jit(inline=True)

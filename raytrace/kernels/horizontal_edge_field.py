@@ -14,13 +14,13 @@ from raytrace.kernels.horizontal_edge_legs import (
     EdgeWorkspace,
     HorizontalEdgeArrays,
 )
-from raytrace.kernels.lanes import ComplexLanes, Lanes, lanes_of, sqrt
+from raytrace.kernels.lanes import ComplexLanes, Lanes, MatrixLanes, lanes_of, sqrt
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.strips import from_frame
 from raytrace.kernels.unfolding import Leg
 from raytrace.kernels.utd import common_factor, diffracted, wedge_terms
 from raytrace.kernels.validity import validity_weight
-from raytrace.kernels.waves import Wave, launch, receive
+from raytrace.kernels.waves import Component, Wave, launch, receive
 from raytrace.kernels.wedge import FaceAngles, face_angles
 
 
@@ -55,7 +55,7 @@ def edge_gain(
     offsets: tuple[float, float],
     n_transmissions: Lanes,
     work: EdgeWorkspace,
-) -> ComplexLanes:
+) -> ComplexLanes | MatrixLanes:
     """Gains of paths.
 
     Parameters
@@ -138,10 +138,10 @@ def over_edge(
     tables: FieldTables,
     path: EdgePath,
     beta: tuple[Lanes, Lanes],
-    field: tuple[ComplexLanes, ComplexLanes],
+    field: tuple[Component, Component],
     transmits: Lanes,
     work: EdgeWorkspace,
-) -> tuple[ComplexLanes, ComplexLanes]:
+) -> tuple[Component, Component]:
     """Fields behind the half plane, without its common factor (see `utd.diffracted`)."""
     edge = path.edge
     at, incident = angles_at_edge(path, work.workspace.rows)

@@ -373,7 +373,7 @@ def sum_horizontal_edge(
             set_halves(edge, seen, work)
         out = geometry.max_reflections - int(beams.strips.link[block.beam, ORDER])
         kept = beams.strips.frame[block.beam, FRACTION]
-        bundle = empty_bundle()
+        bundle = empty_bundle(tables)
         for p in range(len(images.order)):
             left = out - int(images.order[p])
             if left < 0 or is_stopped(collector.guard):

@@ -18,6 +18,11 @@ WIDTH = 8
 Lanes = Floats
 Mask = Bools
 ComplexLanes = Complexes
+RowLanes = Complexes
+MatrixLanes = Complexes
+"""Eight rows of two complex numbers, and eight matrices of two rows (docs/theory.md, eq. 48): in
+Python arrays (2, 8) and (4, 8). Operators with eight complex numbers, or real ones, apply to each
+element."""
 
 Number = Any
 """A float or `Lanes`, in kernels that are compiled for both."""
@@ -111,6 +116,26 @@ def real_of(x: ComplexLanes) -> Lanes:
 def imag_of(x: ComplexLanes) -> Lanes:
     """Imaginary parts."""
     return x.imag
+
+
+def row_of(one: ComplexLanes, other: ComplexLanes) -> RowLanes:
+    """Rows of two complex numbers."""
+    return np.stack([one, other])
+
+
+def matrix_of(one: RowLanes, other: RowLanes) -> MatrixLanes:
+    """Matrices of two rows."""
+    return np.concatenate([one, other])
+
+
+def elements_of(x: ComplexLanes | MatrixLanes) -> tuple[ComplexLanes, ...]:
+    """Elements of matrices, row by row; complex numbers are their only element."""
+    return tuple(np.atleast_2d(x))
+
+
+def squared_size(x: ComplexLanes | MatrixLanes) -> Lanes:
+    """Squared magnitudes, of matrices those of all elements together."""
+    return (np.atleast_2d(x.real) ** 2 + np.atleast_2d(x.imag) ** 2).sum(axis=0)
 
 
 def gather2(table: Floats, row: Lanes) -> tuple[Lanes, Lanes]:

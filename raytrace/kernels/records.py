@@ -6,7 +6,15 @@ import numpy as np
 
 from raytrace.arrays import Complexes, Floats, Int32s, Ints
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.lanes import ComplexLanes, Lanes, imag_of, lane, real_of
+from raytrace.kernels.lanes import (
+    ComplexLanes,
+    Lanes,
+    MatrixLanes,
+    elements_of,
+    imag_of,
+    lane,
+    real_of,
+)
 
 
 class Record(NamedTuple):
@@ -18,7 +26,8 @@ class Record(NamedTuple):
         (n, 5) hit; leg to the edge; height images before and behind the edge, -1 where the path
         has none; number of the one-sided evaluation (see `raytrace.kernels.validity`).
     gain, weight
-        (n,) complex path gain, and weight of a grazing path.
+        (n, k) complex path gain, or those between k pairs of polarisations (see `Sums.field`); and
+        (n,) weight of a grazing path.
     used
         (1,) number of paths found, which may exceed n; -1 if paths are not recorded.
     """
@@ -29,11 +38,11 @@ class Record(NamedTuple):
     used: Ints
 
 
-def new_record(n_paths: int) -> Record:
-    """Record with capacity for a number of paths."""
+def new_record(n_paths: int, n_pairs: int = 1) -> Record:
+    """Record with capacity for a number of paths, and gains between so many pairs each."""
     return Record(
         np.empty((n_paths, 5), np.int32),
-        np.empty(n_paths, np.complex128),
+        np.empty((n_paths, n_pairs), np.complex128),
         np.empty(n_paths),
         np.zeros(1, np.int64),
     )
@@ -52,7 +61,7 @@ def record_paths(
     hits: tuple[int, int],
     leg: int,
     images: tuple[int, int, int],
-    gain: ComplexLanes,
+    gain: ComplexLanes | MatrixLanes,
     weight: Lanes,
 ) -> None:
     """Record the paths of a block that have a weight, up to the record's capacity.
@@ -75,6 +84,7 @@ def record_paths(
         if k < len(record.gain):
             record.key[k, 0], record.key[k, 1] = hits[0] + j, leg
             record.key[k, 2], record.key[k, 3], record.key[k, 4] = images
-            record.gain[k] = complex(lane(real_of(gain), j), lane(imag_of(gain), j))
+            for pair, part in enumerate(elements_of(gain)):
+                record.gain[k, pair] = complex(lane(real_of(part), j), lane(imag_of(part), j))
             record.weight[k] = lane(weight, j)
         record.used[0] = k + 1

@@ -94,7 +94,7 @@ def sum_reflections(
             weight_here = apply_power_threshold(
                 collector, workspace, least, bound, weight_here, several
             )
-        bundle = empty_bundle()
+        bundle = empty_bundle(tables)
         k, side, grazing = zero, zero, all_false()
         while k < n_images:
             slope = (load(workspace.image_z[k]) - z_transmitter) * inv_length

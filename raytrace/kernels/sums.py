@@ -5,15 +5,19 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Complexes, Floats
-from raytrace.kernels.compiling import jit
+from raytrace.kernels.compiling import chosen_by_type, jit
+from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
-    imag_of,
+    MatrixLanes,
+    complex_of,
     lanes_of,
+    matrix_of,
     maximum,
-    real_of,
-    where,
+    row_of,
+    squared_size,
+    where_complex,
 )
 
 
@@ -23,9 +27,10 @@ class Sums(NamedTuple):
     Attributes
     ----------
     field
-        (n,) complex sum of the paths' gains.
+        (n, k) complex sums of the paths' gains: one, or those between k = 4 pairs of polarisations
+        where one is unknown (see `waves.receive`).
     power
-        (n,) sum of their squared magnitudes.
+        (n,) sum of their squared magnitudes, of all pairs together.
     n_paths
         (n, max_reflections + 1) number of paths by reflections.
     moments
@@ -54,14 +59,14 @@ N_MOMENTS = 5
 EXCESS, EXCESS_SQUARED, COSINE, SINE, STRONGEST = range(N_MOMENTS)
 """Columns of `Sums.moments`."""
 
-FIRST_MOMENT = 3
-"""Number of the fields of `Bundle` before its moments."""
+PAIRS = 4
+"""Pairs of polarisations where one is unknown."""
 
 
-def new_sums(n_receivers: int, max_reflections: int) -> Sums:
-    """Sums over no paths."""
+def new_sums(n_receivers: int, max_reflections: int, n_pairs: int = 1) -> Sums:
+    """Sums over no paths, with gains between so many pairs of polarisations."""
     return Sums(
-        np.zeros(n_receivers, np.complex128),
+        np.zeros((n_receivers, n_pairs), np.complex128),
         np.zeros(n_receivers),
         np.zeros((n_receivers, max_reflections + 1)),
         np.zeros((n_receivers, N_MOMENTS)),
@@ -70,9 +75,9 @@ def new_sums(n_receivers: int, max_reflections: int) -> Sums:
     )
 
 
-def sums_bytes(n_receivers: int, max_reflections: int) -> int:
+def sums_bytes(n_receivers: int, max_reflections: int, n_pairs: int = 1) -> int:
     """Size of `Sums`."""
-    return 8 * (n_receivers * (max_reflections + 10) + LEVELS)
+    return 8 * (n_receivers * (max_reflections + 8 + 2 * n_pairs) + LEVELS)
 
 
 def add_sums(total: Sums, part: Sums) -> None:
@@ -86,8 +91,7 @@ def add_sums(total: Sums, part: Sums) -> None:
 class Bundle(NamedTuple):
     """Sums over the paths that arrive at eight receivers; see `Sums`."""
 
-    real: Lanes
-    imag: Lanes
+    field: ComplexLanes | MatrixLanes
     power: Lanes
     excess: Lanes
     excess_squared: Lanes
@@ -96,17 +100,30 @@ class Bundle(NamedTuple):
     strongest: Lanes
 
 
-@jit(inline=True)
-def empty_bundle() -> Bundle:
-    """Sums over no paths."""
+def _empty(tables: FieldTables) -> Bundle:
     none = lanes_of(0.0)
-    return Bundle(none, none, none, none, none, none, none, none)
+    return Bundle(complex_of(none, none), none, none, none, none, none, none)
+
+
+def _empty_matrices(tables: FieldTables) -> Bundle:
+    none = lanes_of(0.0)
+    zero = complex_of(none, none)
+    row = row_of(zero, zero)
+    return Bundle(matrix_of(row, row), none, none, none, none, none, none)
+
+
+def empty_bundle(tables: FieldTables) -> Bundle:
+    """Sums over no paths, of gains as `waves.receive` returns them."""
+    return _empty(tables) if tables.unknown is None else _empty_matrices(tables)
+
+
+chosen_by_type("unknown", _empty, _empty_matrices)(empty_bundle)
 
 
 @jit(inline=True, fast=True)
 def with_path(
     bundle: Bundle,
-    gain: ComplexLanes,
+    gain: ComplexLanes | MatrixLanes,
     excess: Lanes,
     weight: Lanes,
     direction: tuple[Lanes, Lanes],
@@ -122,14 +139,12 @@ def with_path(
     direction
         Cosine and sine of the azimuths of arrival.
     """
-    counts = weight > 0.0
-    real, imag = where(counts, real_of(gain), 0.0), where(counts, imag_of(gain), 0.0)
-    size = real * real + imag * imag
+    counted = where_complex(weight > 0.0, gain, complex_of(lanes_of(0.0), 0.0))
+    size = squared_size(counted)
     power = size * weight
     power_excess = power * excess
     return Bundle(
-        bundle.real + real * weight,
-        bundle.imag + imag * weight,
+        bundle.field + counted * weight,
         bundle.power + power,
         bundle.excess + power_excess,
         bundle.excess_squared + power_excess * excess,

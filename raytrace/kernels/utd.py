@@ -30,6 +30,7 @@ from raytrace.kernels.lanes import (
     minimum,
     where,
 )
+from raytrace.kernels.waves import Component
 from raytrace.kernels.wedge import FaceAngles, Wedge
 
 TRANSITION_MAX = 12.0
@@ -201,9 +202,9 @@ def diffracted(
     terms: WedgeTerms,
     sqrt_2kl: Lanes,
     beta: tuple[Lanes, Lanes],
-    field: tuple[ComplexLanes, ComplexLanes],
+    field: tuple[Component, Component],
     transmits: Lanes,
-) -> tuple[ComplexLanes, ComplexLanes]:
+) -> tuple[Component, Component]:
     """Fields behind a wedge, without its common factor (see `common_factor`).
 
     Parameters
@@ -254,8 +255,8 @@ def transmitted(
     wedge: Wedge,
     terms: WedgeTerms,
     beta: tuple[Lanes, Lanes],
-    field: tuple[ComplexLanes, ComplexLanes],
-) -> tuple[ComplexLanes, ComplexLanes]:
+    field: tuple[Component, Component],
+) -> tuple[Component, Component]:
     """Field transmitted by a sheet, along its edge and across it."""
     along, across = field
     cosine = minimum(terms.o_cosine * beta[0], 1.0)

@@ -1,7 +1,7 @@
 """Compilation of `raytrace.kernels.lanes` to LLVM's vectors.
 
-Importing this module registers three types with numba, eight floats, eight complex numbers and
-eight booleans, with their operators and the functions of `lanes`.
+Importing this module registers types with numba, with their operators and the functions of `lanes`:
+eight floats, eight booleans, and eight complex numbers, or rows or matrices of them.
 """
 
 import operator
@@ -31,16 +31,26 @@ class LanesType(types.Type):
 
 
 class ComplexLanesType(types.Type):
-    """Eight complex numbers, their real and their imaginary parts side by side."""
+    """Eight complex numbers, real and imaginary parts side by side, or several times as many.
+
+    Parameters
+    ----------
+    count
+        How many times.
+    """
+
+    def __init__(self, name: str, count: int) -> None:
+        super().__init__(name)
+        self.parts = [f"{part}{k}" for k in range(count) for part in ("real", "imag")]
 
 
 class MaskType(types.Type):
     """Eight booleans."""
 
 
-LANES, COMPLEX, MASK = (t(n) for t, n in (
-    (LanesType, "lanes"), (ComplexLanesType, "complex_lanes"), (MaskType, "mask"),
-))  # fmt: skip
+LANES, MASK = LanesType("lanes"), MaskType("mask")
+COMPLEX = ComplexLanesType("complex_lanes", 1)
+ROW, MATRIX = ComplexLanesType("row_lanes", 2), ComplexLanesType("matrix_lanes", 4)
 FLOAT, COMPLEX_FLOAT = types.float64, types.complex128
 
 
@@ -58,13 +68,13 @@ class _MaskModel(models.PrimitiveModel):
 
 @register_model(ComplexLanesType)
 class _ComplexLanesModel(models.StructModel):
-    def __init__(self, manager: Any, numba_type: types.Type) -> None:
-        super().__init__(manager, numba_type, [("real", LANES), ("imag", LANES)])
+    def __init__(self, manager: Any, numba_type: ComplexLanesType) -> None:
+        super().__init__(manager, numba_type, [(part, LANES) for part in numba_type.parts])
 
 
 Lower = Callable[[ir.IRBuilder, Sequence[Any]], Any]
 """Function that emits the instructions, given a builder and the operands: real ones as vectors,
-complex ones as pairs of vectors."""
+complex ones as real and imaginary parts in turn."""
 
 
 def _spread(builder: ir.IRBuilder, number: Value) -> Value:
@@ -79,13 +89,15 @@ def _index(k: int) -> ir.Constant:
 
 
 def _operand(context: Any, builder: ir.IRBuilder, kind: types.Type, value: Value) -> Any:
-    """Value of a numba type; a number as a vector or a pair of vectors."""
+    """Value of a numba type; a number as one vector or several."""
     if kind == FLOAT:
         return _spread(builder, value)
-    if kind in (COMPLEX, COMPLEX_FLOAT):
-        parts = cgutils.create_struct_proxy(kind)(context, builder, value=value)
-        pair = parts.real, parts.imag
-        return pair if kind == COMPLEX else tuple(_spread(builder, part) for part in pair)
+    if kind == COMPLEX_FLOAT:
+        number = cgutils.create_struct_proxy(kind)(context, builder, value=value)
+        return [_spread(builder, part) for part in (number.real, number.imag)]
+    if isinstance(kind, ComplexLanesType):
+        made = cgutils.create_struct_proxy(kind)(context, builder, value=value)
+        return [getattr(made, part) for part in kind.parts]
     return value
 
 
@@ -123,11 +135,14 @@ def _register(
 
 def _returned(context: Any, builder: ir.IRBuilder, result: types.Type, value: Any) -> Value:
     """Result of a function as numba represents it."""
-    if result == COMPLEX:
-        made = cgutils.create_struct_proxy(COMPLEX)(context, builder)
-        made.real, made.imag = value
+    if isinstance(result, ComplexLanesType):
+        made = cgutils.create_struct_proxy(result)(context, builder)
+        for part, vector in zip(result.parts, value, strict=True):
+            setattr(made, part, vector)
         return made._getvalue()
     if isinstance(result, types.UniTuple):
+        if result.dtype == COMPLEX:
+            value = [_returned(context, builder, COMPLEX, one) for one in value]
         return context.make_tuple(builder, result, value)
     return context.get_dummy_value() if value is None else value
 
@@ -138,8 +153,18 @@ def _with_numbers(own: types.Type, *others: types.Type) -> list[tuple[types.Type
 
 
 _REAL_PAIRS = _with_numbers(LANES, FLOAT)
-_COMPLEX_PAIRS = _with_numbers(COMPLEX, COMPLEX_FLOAT)
-_MIXED_PAIRS = [(COMPLEX, LANES), (COMPLEX, FLOAT)]
+_COMPLEX_TYPES = (COMPLEX, ROW, MATRIX)
+
+
+def _complex_pairs(own: types.Type) -> list[tuple[types.Type, types.Type]]:
+    """Types of operands that are complex: of the same type, or one of them a single number."""
+    singles = () if own == COMPLEX else (COMPLEX,)
+    return _with_numbers(own, COMPLEX_FLOAT, *singles)
+
+
+def _mixed_pairs(own: types.Type) -> list[tuple[types.Type, types.Type]]:
+    """Types of operands of which the second is real."""
+    return [(own, LANES), (own, FLOAT)]
 
 
 def _implement_operators() -> None:
@@ -147,17 +172,8 @@ def _implement_operators() -> None:
     for name, write in {"add": "fadd", "sub": "fsub", "mul": "fmul", "truediv": "fdiv"}.items():
         for op in (getattr(operator, name), getattr(operator, f"i{name}")):
             _implement(op, LANES, *_REAL_PAIRS)(lambda b, x, w=write: getattr(b, w)(x[0], x[1]))
-    for name, write in {"add": "fadd", "sub": "fsub"}.items():
-        for op in (getattr(operator, name), getattr(operator, f"i{name}")):
-            _implement(op, COMPLEX, *_COMPLEX_PAIRS)(
-                lambda b, x, w=write: [getattr(b, w)(x[0][k], x[1][k]) for k in range(2)]
-            )
-    for op in (operator.mul, operator.imul):
-        _implement(op, COMPLEX, *_COMPLEX_PAIRS)(_product)
-        _implement(op, COMPLEX, *_MIXED_PAIRS)(lambda b, x: [b.fmul(part, x[1]) for part in x[0]])
-        _implement(op, COMPLEX, *((two, one) for one, two in _MIXED_PAIRS))(
-            lambda b, x: [b.fmul(x[0], part) for part in x[1]]
-        )
+    for own in _COMPLEX_TYPES:
+        _implement_complex_operators(own)
     for name, sign in {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "=="}.items():
         _implement(getattr(operator, name), MASK, *_REAL_PAIRS)(
             lambda b, x, s=sign: b.fcmp_ordered(s, x[0], x[1])
@@ -167,13 +183,37 @@ def _implement_operators() -> None:
         _implement(op, MASK, (MASK, MASK))(lambda b, x, w=write: getattr(b, w)(x[0], x[1]))
     _implement(operator.invert, MASK, (MASK,))(lambda b, x: b.not_(x[0]))
     _implement(operator.neg, LANES, (LANES,))(lambda b, x: b.fneg(x[0]))
-    _implement(operator.neg, COMPLEX, (COMPLEX,))(lambda b, x: [b.fneg(part) for part in x[0]])
+
+
+def _implement_complex_operators(own: types.Type) -> None:
+    """Register arithmetic of complex numbers, or of several by one."""
+    for name, write in {"add": "fadd", "sub": "fsub"}.items():
+        for op in (getattr(operator, name), getattr(operator, f"i{name}")):
+            _implement(op, own, *_complex_pairs(own))(
+                lambda b, x, w=write: [getattr(b, w)(*both) for both in _side_by_side(x)]
+            )
+    for op in (operator.mul, operator.imul):
+        _implement(op, own, *_complex_pairs(own))(_product)
+        _implement(op, own, *_mixed_pairs(own))(lambda b, x: [b.fmul(part, x[1]) for part in x[0]])
+        _implement(op, own, *((two, one) for one, two in _mixed_pairs(own)))(
+            lambda b, x: [b.fmul(x[0], part) for part in x[1]]
+        )
+    _implement(operator.neg, own, (own,))(lambda b, x: [b.fneg(part) for part in x[0]])
+
+
+def _side_by_side(x: Sequence[Any]) -> list[tuple[Value, Value]]:
+    """Parts of two complex operands; a single number belongs to all of several."""
+    count = max(len(operand) for operand in x)
+    one, other = (operand * (count // len(operand)) for operand in map(list, x))
+    return list(zip(one, other, strict=True))
 
 
 def _product(builder: ir.IRBuilder, x: Sequence[Any]) -> list[Value]:
-    (a, b), (c, d) = x
+    both, found = _side_by_side(x), []
     m, add, subtract = builder.fmul, builder.fadd, builder.fsub
-    return [subtract(m(a, c), m(b, d)), add(m(a, d), m(b, c))]
+    for (a, c), (b, d) in zip(both[::2], both[1::2], strict=True):
+        found += [subtract(m(a, c), m(b, d)), add(m(a, d), m(b, c))]
+    return found
 
 
 _implement_operators()
@@ -185,9 +225,25 @@ _implement(lanes.imag_of, LANES, (COMPLEX,))(lambda b, x: x[0][1])
 _implement(lanes.where, LANES, *((MASK, *pair) for pair in _REAL_PAIRS))(
     lambda b, x: b.select(x[0], x[1], x[2])
 )
-_implement(lanes.where_complex, COMPLEX, *((MASK, *pair) for pair in _COMPLEX_PAIRS))(
-    lambda b, x: [b.select(x[0], x[1][k], x[2][k]) for k in range(2)]
-)
+for _own in _COMPLEX_TYPES:
+    _implement(lanes.where_complex, _own, *((MASK, *pair) for pair in _complex_pairs(_own)))(
+        lambda b, x: [b.select(x[0], *both) for both in _side_by_side(x[1:])]
+    )
+_implement(lanes.row_of, ROW, (COMPLEX, COMPLEX))(lambda b, x: [*x[0], *x[1]])
+_implement(lanes.matrix_of, MATRIX, (ROW, ROW))(lambda b, x: [*x[0], *x[1]])
+for _own, _count in ((COMPLEX, 1), (MATRIX, 4)):
+    _implement(lanes.elements_of, types.UniTuple(COMPLEX, _count), (_own,))(
+        lambda b, x: [x[0][k : k + 2] for k in range(0, len(x[0]), 2)]
+    )
+
+
+@_implement(lanes.squared_size, LANES, (COMPLEX,), (MATRIX,))
+def _squared_size(builder: ir.IRBuilder, x: Sequence[Any]) -> Value:
+    squares = [builder.fmul(part, part) for part in x[0]]
+    total = squares[0]
+    for square in squares[1:]:
+        total = builder.fadd(total, square)
+    return total
 
 
 def _intrinsic(function: Callable[..., Any], name: str, *cases: tuple[types.Type, ...]) -> None:

@@ -25,6 +25,7 @@ from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
     Mask,
+    MatrixLanes,
     absolute,
     all_false,
     any_of,
@@ -180,7 +181,7 @@ def pair_gain(
     bounces: int,
     offset: float,
     n_transmissions: Lanes,
-) -> tuple[ComplexLanes, Lanes]:
+) -> tuple[ComplexLanes | MatrixLanes, Lanes]:
     """Gains of paths with some transmissions, without the common factor, and their lengths [m].
 
     With every length its horizontal part over cos_el, and sin beta = cos_el, the spreading factor
@@ -208,7 +209,8 @@ def pair_gain(
     wave = propagate(building, tables, out.leg, out.n, out.length, ray, heights, wave)
     distance = pair.total * ray.sec_elevation
     phase = phasor(tables.cis, distance * (1.0 / tables.wavelength))
-    return receive(tables, wave, out.arriving) * (phase * (pair.spreading * root)), distance
+    amplitude = receive(tables, wave, out.arriving)
+    return amplitude * (phase * (pair.spreading * root)), distance
 
 
 @jit(inline=True, fast=True)
@@ -294,7 +296,7 @@ def sum_vertical_edge(
         if is_bounded:
             bound_out = leg_bound(geometry, tables, leg, out.n, out.length, out.order)
             bound_out = minimum(bound_out, beams.tree.beam[block.beam, FRACTION])
-        bundle = empty_bundle()
+        bundle = empty_bundle(tables)
         for p in range(len(legs.order)):
             n_images = 2 * (geometry.max_reflections - out.order - legs.order[p]) + 1
             if n_images < 0 or is_stopped(collector.guard):

@@ -7,20 +7,27 @@ psi = z x s / cos_el (docs/conventions.md).
 from typing import NamedTuple
 
 from raytrace.arrays import Floats
-from raytrace.kernels.compiling import jit
+from raytrace.kernels.compiling import chosen_by_type, jit
 from raytrace.kernels.field_tables import FieldTables, between_rows, interpolated
 from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
+    MatrixLanes,
+    RowLanes,
     absolute,
     complex_of,
     floor,
     lanes_of,
+    matrix_of,
     maximum,
     minimum,
+    row_of,
     sqrt,
     where,
 )
+
+Component = ComplexLanes | RowLanes
+"""Of a field; rows where a polarisation is unknown, for both that are sent."""
 
 
 class Wave(NamedTuple):
@@ -36,8 +43,8 @@ class Wave(NamedTuple):
         Reflections at floor and ceiling so far.
     """
 
-    v: ComplexLanes
-    h: ComplexLanes
+    v: Component
+    h: Component
     sin_elevation: Lanes
     bounce_count: Lanes
 
@@ -73,6 +80,45 @@ def pattern_at(
 
 
 @jit(inline=True)
+def radiated(
+    tables: FieldTables, direction: tuple[Lanes, Lanes], sin_elevation: Lanes
+) -> tuple[ComplexLanes, ComplexLanes]:
+    """V and H amplitudes of a transmitter of known polarisation."""
+    if len(tables.patterns[0]) == 0:
+        none = lanes_of(0.0)
+        v = complex_of(interpolated(tables.transmit, sin_elevation), none)
+        return v, complex_of(none, none)
+    return pattern_at(
+        tables.patterns[0], tables.azimuths, direction[0], direction[1], sin_elevation
+    )
+
+
+@jit(inline=True)
+def received(tables: FieldTables, wave: Wave, direction: tuple[Lanes, Lanes]) -> Component:
+    """Amplitude that a receiver of known polarisation takes."""
+    if len(tables.patterns[1]) == 0:
+        return wave.v * interpolated(tables.receive, -wave.sin_elevation)
+    v, h = pattern_at(
+        tables.patterns[1], tables.azimuths, direction[0], direction[1], -wave.sin_elevation
+    )
+    return v * wave.v - h * wave.h
+
+
+def _launch(tables: FieldTables, direction: tuple[Lanes, Lanes], sin_elevation: Lanes) -> Wave:
+    v, h = radiated(tables, direction, sin_elevation)
+    return Wave(v, h, sin_elevation, lanes_of(0.0))
+
+
+def _launch_rows(tables: FieldTables, direction: tuple[Lanes, Lanes], sin_elevation: Lanes) -> Wave:
+    none, unknown = lanes_of(0.0), tables.unknown[0]  # pyright: ignore[reportOptionalSubscript]
+    zero = complex_of(none, none)
+    if unknown > 0.0:
+        size = complex_of(lanes_of(unknown), none)
+        return Wave(row_of(size, zero), row_of(zero, size), sin_elevation, none)
+    v, h = radiated(tables, direction, sin_elevation)
+    return Wave(row_of(v, zero), row_of(h, zero), sin_elevation, none)
+
+
 def launch(tables: FieldTables, direction: tuple[Lanes, Lanes], sin_elevation: Lanes) -> Wave:
     """Field that the transmitter radiates along rays.
 
@@ -83,19 +129,33 @@ def launch(tables: FieldTables, direction: tuple[Lanes, Lanes], sin_elevation: L
     direction
         Horizontal directions of departure, of length 1.
     """
-    none = lanes_of(0.0)
-    if len(tables.patterns[0]) == 0:
-        v = complex_of(interpolated(tables.transmit, sin_elevation), none)
-        return Wave(v, complex_of(none, none), sin_elevation, none)
-    v, h = pattern_at(
-        tables.patterns[0], tables.azimuths, direction[0], direction[1], sin_elevation
-    )
-    return Wave(v, h, sin_elevation, none)
+    of_kind = _launch if tables.unknown is None else _launch_rows
+    return of_kind(tables, direction, sin_elevation)
 
 
-@jit(inline=True)
-def receive(tables: FieldTables, wave: Wave, direction: tuple[Lanes, Lanes]) -> ComplexLanes:
+def _receive_rows(
+    tables: FieldTables, wave: Wave, direction: tuple[Lanes, Lanes]
+) -> ComplexLanes | MatrixLanes:
+    unknown = tables.unknown[1]  # pyright: ignore[reportOptionalSubscript]
+    if unknown > 0.0:
+        return matrix_of(wave.v * unknown, wave.h * -unknown)
+    row = received(tables, wave, direction)
+    return matrix_of(row, row * 0.0)
+
+
+def _receive(
+    tables: FieldTables, wave: Wave, direction: tuple[Lanes, Lanes]
+) -> ComplexLanes | MatrixLanes:
+    return received(tables, wave, direction)
+
+
+def receive(
+    tables: FieldTables, wave: Wave, direction: tuple[Lanes, Lanes]
+) -> ComplexLanes | MatrixLanes:
     """Amplitude that the receiver's antenna takes from a field.
+
+    Where a polarisation is unknown: matrices, a row for each component that is received, a column
+    for each that is sent.
 
     Parameters
     ----------
@@ -104,9 +164,9 @@ def receive(tables: FieldTables, wave: Wave, direction: tuple[Lanes, Lanes]) -> 
     direction
         Horizontal directions that the rays come from, of length 1.
     """
-    if len(tables.patterns[1]) == 0:
-        return wave.v * interpolated(tables.receive, -wave.sin_elevation)
-    v, h = pattern_at(
-        tables.patterns[1], tables.azimuths, direction[0], direction[1], -wave.sin_elevation
-    )
-    return v * wave.v - h * wave.h
+    of_kind = _receive if tables.unknown is None else _receive_rows
+    return of_kind(tables, wave, direction)
+
+
+chosen_by_type("unknown", _launch, _launch_rows)(launch)
+chosen_by_type("unknown", _receive, _receive_rows)(receive)

@@ -8,9 +8,21 @@ import numpy as np
 from raytrace.arrays import Floats, Ints
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.guard import Guard
-from raytrace.kernels.lanes import WIDTH, Lanes, any_of, lane, lanes_of, load, store, where
+from raytrace.kernels.lanes import (
+    WIDTH,
+    Lanes,
+    any_of,
+    elements_of,
+    imag_of,
+    lane,
+    lanes_of,
+    load,
+    real_of,
+    store,
+    where,
+)
 from raytrace.kernels.records import Record
-from raytrace.kernels.sums import EXCESS, FIRST_MOMENT, N_MOMENTS, STRONGEST, Bundle, Sums
+from raytrace.kernels.sums import EXCESS, N_MOMENTS, PAIRS, STRONGEST, Bundle, Sums
 
 
 class Collector(NamedTuple):
@@ -54,7 +66,7 @@ class Workspace(NamedTuple):
     left
         (8,) bound on the power of paths to them that are left out.
     rows
-        (FIRST_MOMENT + N_MOMENTS, 8) scratch.
+        (2 PAIRS + 1 + N_MOMENTS, 8) scratch.
     """
 
     receivers: Ints
@@ -73,7 +85,7 @@ def new_workspace(max_reflections: int) -> Workspace:
         np.empty((2 * max_reflections + 1, WIDTH)),
         np.empty((max_reflections + 1, WIDTH)),
         np.zeros(WIDTH),
-        np.empty((FIRST_MOMENT + N_MOMENTS, WIDTH)),
+        np.empty((2 * PAIRS + 1 + N_MOMENTS, WIDTH)),
     )
 
 
@@ -91,17 +103,21 @@ def add_bundle(sums: Sums, workspace: Workspace, n: int, bundle: Bundle) -> None
         total = total + load(workspace.counts[k])
     if not any_of(total > 0.0):
         return
-    rows = workspace.rows
-    for k, part in enumerate(bundle):
+    rows, fields = workspace.rows, workspace.rows[1 + N_MOMENTS :]
+    for k, part in enumerate(bundle[1:]):
         store(rows[k], part)
+    for k, gain in enumerate(elements_of(bundle.field)):
+        store(fields[2 * k], real_of(gain))
+        store(fields[2 * k + 1], imag_of(gain))
     for j in range(n):
         r = workspace.receivers[j]
-        sums.field[r] += complex(rows[0, j], rows[1, j])
-        sums.power[r] += rows[2, j]
+        for k in range(sums.field.shape[1]):
+            sums.field[r, k] += complex(fields[2 * k, j], fields[2 * k + 1, j])
+        sums.power[r] += rows[0, j]
         moments = sums.moments[r]
         for k in range(EXCESS, STRONGEST):
-            moments[k] += rows[FIRST_MOMENT + k, j]
-        moments[STRONGEST] = max(moments[STRONGEST], rows[FIRST_MOMENT + STRONGEST, j])
+            moments[k] += rows[1 + k, j]
+        moments[STRONGEST] = max(moments[STRONGEST], rows[1 + STRONGEST, j])
         for k in range(len(workspace.counts)):
             sums.n_paths[r, k] += workspace.counts[k, j]
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from scipy.special import fresnel
 
-from raytrace.arrays import Complexes, Floats
-from raytrace.kernels.field_tables import FieldTables
+from raytrace.arrays import Complexes, Floats, Ints
+from raytrace.kernels.field_tables import FieldTables, Unknown
 from raytrace.kernels.utd import TRANSITION_MAX, TRANSITION_STEPS
 from raytrace.radio.antennas import (
     Antenna,
@@ -39,7 +39,10 @@ def field_tables(
     receive_antenna: Antenna | None = None,
     through_walls: bool = False,
 ) -> FieldTables:
-    """Tabulate materials, antennas and special functions at the transmitter's frequency."""
+    """Tabulate materials, antennas and special functions at the transmitter's frequency.
+
+    For an antenna of unknown polarisation see `FieldTables.unknown`.
+    """
     turn = np.arange(CIS_STEPS + 1) * (2.0 * np.pi / CIS_STEPS)
     found = _at_all_angles(slabs, transmitter.frequency_hz)
     return FieldTables(
@@ -50,7 +53,7 @@ def field_tables(
         max_reflectance=_max_reflectance(found).ravel(),
         transition=transition_table(),
         cis=np.column_stack([np.cos(turn), np.sin(turn)]),
-        **_antennas(transmitter.antenna, receive_antenna or HalfWaveDipole()),
+        **_ends(transmitter.antenna, receive_antenna or HalfWaveDipole()),
     )
 
 
@@ -59,7 +62,6 @@ def tables_of_polarisations(
     slabs: Sequence[Slab],
     *,
     receive_antenna: Antenna | None = None,
-    through_walls: bool = False,
 ) -> tuple[FieldTables, ...]:
     """Tabulate antennas of known polarisations, whose received powers are to be added.
 
@@ -69,9 +71,17 @@ def tables_of_polarisations(
     transmit = polarisations(transmitter.antenna)
     receive = polarisations(receive_antenna or HalfWaveDipole())
     sender = replace(transmitter, antenna=transmit[0])
-    first = field_tables(sender, slabs, receive_antenna=receive[0], through_walls=through_walls)
+    first = field_tables(sender, slabs, receive_antenna=receive[0], through_walls=True)
     others = list(product(transmit, receive))[1:]
     return (first, *(first._replace(**_antennas(*both)) for both in others))
+
+
+def pairs_of(unknown: Unknown | None) -> Ints:
+    """Columns of `Sums.field` in the order of `tables_of_polarisations`."""
+    if unknown is None:
+        return np.zeros(1, np.int64)
+    sent, received = (np.arange(2 if amplitude > 0.0 else 1) for amplitude in unknown)
+    return (sent[:, None] + 2 * received).ravel()
 
 
 def step_tables(
@@ -82,9 +92,7 @@ def step_tables(
     The table of an antenna of unknown polarisation has one element, the amplitude of either
     component.
     """
-    first, *_ = tables_of_polarisations(
-        transmitter, slabs, receive_antenna=receive_antenna, through_walls=True
-    )
+    first, *_ = tables_of_polarisations(transmitter, slabs, receive_antenna=receive_antenna)
     ends = {"transmit": transmitter.antenna, "receive": receive_antenna or HalfWaveDipole()}
     components = {end: polarisations(antenna) for end, antenna in ends.items()}
     one = {
@@ -93,6 +101,28 @@ def step_tables(
         if len(parts) > 1
     }
     return first._replace(**one)
+
+
+def _ends(transmit: Antenna, receive: Antenna) -> dict[str, Any]:
+    """Tables of both antennas, and the amplitudes of those of unknown polarisation.
+
+    The squared elements of a path's matrix add up to its largest squared gain at most once if one
+    polarisation is unknown, and twice if both are; the peak gain accounts for that.
+    """
+    components = [polarisations(antenna) for antenna in (transmit, receive)]
+    tables = _antennas(components[0][0], components[1][0])
+    if all(len(parts) == 1 for parts in components):
+        return tables
+    amplitudes = [
+        float(parts[0].amplitudes(np.zeros(1), np.zeros(1)).v[0]) if len(parts) > 1 else 0.0
+        for parts in components
+    ]
+    once = 2.0 if all(amplitudes) else 1.0
+    return {
+        **tables,
+        "unknown": (amplitudes[0], amplitudes[1]),
+        "peak_gain": once * tables["peak_gain"],
+    }
 
 
 def _antennas(transmit: Antenna, receive: Antenna) -> dict[str, Any]:

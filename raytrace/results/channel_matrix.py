@@ -56,10 +56,7 @@ def channel_matrix(
     offsets = np.asarray(offsets_hz, dtype=np.float64)
     if offsets.ndim != 1 or not (np.abs(offsets) <= MAX_OFFSET_HZ).all():
         raise ValueError(f"offsets_hz = {offsets_hz}: expected a list of numbers, up to 1e15 Hz")
-    if paths.pair_gains is not None:
-        raise ValueError(
-            "the polarisation of an antenna is unknown: expected elements of a known one"
-        )
+    paths.check_polarisation()
     most = int(paths.receiver.max(initial=-1)) + 1
     n = most if n_receivers is None else index(n_receivers)
     if n < most:

@@ -90,9 +90,7 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
     strongest = moments[:, STRONGEST]
     return {
         "rss_dbm": received_dbm(power, power_dbm),
-        "rss_coherent_dbm": received_dbm(
-            np.where(reached, np.abs(sums.field) ** 2, 0.0), power_dbm
-        ),
+        "rss_coherent_dbm": received_dbm(np.where(reached, coherent_power(sums), 0.0), power_dbm),
         "path_count": path_count(n_paths, power),
         "strongest_path_dbm": received_dbm(strongest, power_dbm),
         "mean_delay_s": np.where(reached, straight_m + mean[:, EXCESS], 0.0) / SPEED_OF_LIGHT,
@@ -101,6 +99,11 @@ def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDA
         "k_factor_db": k_factor_db(strongest, power, n_paths),
         "left_out_db": _ratio_db(sums.left_out, power),
     }
+
+
+def coherent_power(sums: Sums) -> Floats:
+    """Power gains (n,) of the sum of the paths' fields, over all pairs of polarisations."""
+    return (np.abs(sums.field) ** 2).sum(axis=1)
 
 
 def path_count(n_paths: Floats, power: Floats) -> Ints:

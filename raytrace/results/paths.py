@@ -257,11 +257,12 @@ class Paths:
         Raises
         ------
         ValueError
-            For a bandwidth that is not from 1e-15 to 1e15 Hz, a start beyond 1e15 s, no tap, or
-            fewer receivers than paths reach.
+            For an antenna of unknown polarisation, a bandwidth that is not from 1e-15 to 1e15 Hz, a
+            start beyond 1e15 s, no tap, or fewer receivers than paths reach.
         MemoryLimitError
             For more taps than half of the free memory holds.
         """
+        self.check_polarisation()
         if not 1e-15 <= bandwidth_hz <= 1e15:
             raise ValueError(f"bandwidth_hz = {bandwidth_hz}: expected 1e-15 to 1e15")
         if not abs(start_s) <= 1e15:
@@ -280,6 +281,13 @@ class Paths:
         for n in range(taps):
             np.add.at(channel[:, n], self.receiver, self.weight * self.gain * np.sinc(n - shift))
         return ImpulseResponse(channel, start_s + np.arange(taps) / bandwidth_hz)
+
+    def check_polarisation(self) -> None:
+        """Check that gains are those of fields, which add up; raise ValueError otherwise."""
+        if self.pair_gains is not None:
+            raise ValueError(
+                "the polarisation of an antenna is unknown, so that only powers add up: expected a known one"
+            )
 
     def at(self, receiver: int) -> Paths:
         """Return the paths of one receiver."""

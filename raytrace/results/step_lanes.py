@@ -84,9 +84,17 @@ def gains_of(tables: Sequence[FieldTables], steps: Steps) -> tuple[Complexes, Co
         real, imag = np.zeros(path.shape), np.zeros(path.shape)
         write_gains(of_one, lanes, np.empty((0, 4, WIDTH)), real, imag)
         found[path[is_real]] = (real + 1j * imag)[is_real]
-    if len(tables) == 1:
-        return gains[0], None
-    size = np.abs(gains)
-    strongest = np.take_along_axis(gains, size.argmax(axis=0)[None], axis=0)[0]
-    together = np.sqrt((size**2).sum(axis=0)) * np.exp(1j * np.angle(strongest))
-    return together, np.ascontiguousarray(gains.T)
+    return with_all_pairs(gains.T)
+
+
+def with_all_pairs(pairs: Complexes) -> tuple[Complexes, Complexes | None]:
+    """Return the gains of all pairs of polarisations (n, k) together, and the pairs if k > 1.
+
+    The powers are added, and the phase is that of the strongest gain.
+    """
+    if pairs.shape[1] == 1:
+        return pairs[:, 0], None
+    size = np.abs(pairs)
+    strongest = np.take_along_axis(pairs, size.argmax(axis=1)[:, None], axis=1)[:, 0]
+    together = np.sqrt((size**2).sum(axis=1)) * np.exp(1j * np.angle(strongest))
+    return together, np.ascontiguousarray(pairs)

@@ -33,8 +33,8 @@ def sum_paths(
     *,
     max_paths: int | None = None,
     progress: Progress | None = None,
-) -> Sums:
-    """Sum the paths of some classes at each receiver.
+) -> list[Sums]:
+    """Sum the paths of some classes at each receiver, with each of several evaluations.
 
     Parameters
     ----------
@@ -43,16 +43,18 @@ def sum_paths(
     classes
         At least one; beams that were grown before are used again.
     evaluations
-        Field tables and power threshold; of several, the powers are added.
+        Field tables and power thresholds.
     max_paths
-        Raise the power threshold to where no more paths than that are left; no limit by default.
+        Raise the power thresholds to where no more paths than that are left; no limit by default.
     progress
         Called as classes are done.
     """
     if max_paths is not None:
-        unlimited = [replace(evaluations[0], min_power=math.inf)]
-        least = _min_power(_sum(workers, classes, unlimited, None).bins, max_paths)
-        evaluations = [replace(e, min_power=max(least, e.min_power)) for e in evaluations]
+        unlimited = [replace(each, min_power=math.inf) for each in evaluations]
+        evaluations = [
+            replace(each, min_power=max(_min_power(sums.bins, max_paths), each.min_power))
+            for each, sums in zip(evaluations, _sum(workers, classes, unlimited, None), strict=True)
+        ]
     return _sum(workers, classes, evaluations, progress)
 
 
@@ -69,7 +71,7 @@ def _sum(
     classes: Sequence[PathClass],
     evaluations: Sequence[Evaluation],
     progress: Progress | None,
-) -> Sums:
+) -> list[Sums]:
     """Sum classes as they are done, in their order."""
     parts = _in_order(workers, classes, evaluations)
     totals = next(parts)
@@ -80,7 +82,7 @@ def _sum(
             add_sums(total, addend)
         if progress is not None:
             progress(done, len(classes))
-    return _added_powers(totals)
+    return totals
 
 
 def _in_order(
@@ -94,20 +96,3 @@ def _in_order(
             yield workers.result(ahead.popleft())
     while ahead:
         yield workers.result(ahead.popleft())
-
-
-def _added_powers(parts: Sequence[Sums]) -> Sums:
-    """Add the powers that antennas of several polarisations receive over the same paths.
-
-    So that squared magnitudes of fields add up too, the field has the phase of the first one.
-    """
-    if len(parts) == 1:
-        return parts[0]
-    first = parts[0]
-    size = np.sqrt(sum(np.abs(part.field) ** 2 for part in parts))
-    return first._replace(
-        field=size * np.exp(1j * np.angle(first.field)),
-        power=np.sum([part.power for part in parts], axis=0),
-        moments=np.sum([part.moments for part in parts], axis=0),
-        left_out=np.sum([part.left_out for part in parts], axis=0),
-    )

@@ -16,7 +16,9 @@ from raytrace.kernels.steps import PATH_BYTES, STEP_BYTES, Steps, new_steps
 from raytrace.kernels.sums import Sums, new_sums
 from raytrace.kernels.vertical_edge_legs import VerticalEdgeBeams
 from raytrace.kernels.workspace import Collector
+from raytrace.radio.tables import pairs_of
 from raytrace.results.paths import Paths
+from raytrace.results.step_lanes import with_all_pairs
 from raytrace.solver.limits import check_whole, nbytes, taking
 from raytrace.solver.path_class import Evaluation, KeptRecord
 from raytrace.solver.setup import BEAMS, Tracing
@@ -80,7 +82,8 @@ class BeamClass(ABC, Generic[Beams]):
         heights = np.zeros((0, 0))
         if len(least) or evaluation.min_power > 0.0:
             heights = height_sums(geometry, evaluation.tables)
-        sums = new_sums(len(geometry.receivers.xy), geometry.max_reflections)
+        n_receivers = len(geometry.receivers.xy)
+        sums = new_sums(n_receivers, geometry.max_reflections, evaluation.n_pairs)
         return Collector(sums, record, evaluation.min_power, least, heights, guard)
 
     def grow(self) -> int:
@@ -90,45 +93,39 @@ class BeamClass(ABC, Generic[Beams]):
 
     def sum_paths(self, evaluation: Evaluation, beams: Ints | None = None) -> Sums:
         """See `PathClass`."""
-        return self._sum(self._beams(), evaluation, beams)
+        return self.sum_each([evaluation], beams)[0]
 
-    def sum_each(self, evaluations: Sequence[Evaluation]) -> list[Sums]:
+    def sum_each(self, evaluations: Sequence[Evaluation], beams: Ints | None = None) -> list[Sums]:
         """See `PathClass`."""
-        grown = self._beams()
-        return [self._sum(grown, evaluation, None) for evaluation in evaluations]
-
-    def _sum(
-        self, bounded: tuple[Beams, float], evaluation: Evaluation, beams: Ints | None
-    ) -> Sums:
-        grown, left_out = bounded
+        grown, left_out = self._beams()
         guard = self._guard_beside(grown)
-        collector = self._collector(evaluation, no_record(), guard)
-        sums = collector.sums
+        collectors = [self._collector(each, no_record(), guard) for each in evaluations]
         numbers = np.arange(self._n_beams(grown)) if beams is None else beams
         while len(numbers):
             batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
             check_whole(guard, done > 0, HITS)
-            self._evaluate(batch, evaluation, collector)
+            for evaluation, collector in zip(evaluations, collectors, strict=True):
+                self._evaluate(batch, evaluation, collector)
             numbers = numbers[done:]
         check_whole(guard, True, HITS)
-        sums.left_out[np.unique(self._tracing.targets.number)] += left_out
-        return sums
+        reachable = np.unique(self._tracing.targets.number)
+        for collector in collectors:
+            collector.sums.left_out[reachable] += left_out
+        return [collector.sums for collector in collectors]
 
     def list_paths(self, evaluation: Evaluation, strongest: int | None = None) -> Paths:
         """See `PathClass`; the paths are counted first, then recorded."""
         if strongest is None:
-            return self._paths(*self._recorded(evaluation))
+            return self._paths(*self._recorded(evaluation), evaluation)
         beams, record = self._recorded(evaluation, RECORD_BYTES)
         receiver = beams.hits.pair[record.key[:, 0], 0]
-        return self._paths(beams, _rows(record, strongest_rows(receiver, record.gain, strongest)))
+        rows = strongest_rows(receiver, record.gain, strongest)
+        return self._paths(beams, _rows(record, rows), evaluation)
 
-    def keep_paths(self, evaluations: Sequence[Evaluation]) -> KeptRecord:
-        """See `PathClass`; bounds are the same for all evaluations, and so are the paths."""
-        beams, record = self._recorded(evaluations[0])
-        power = record.weight * np.abs(record.gain) ** 2
-        for evaluation in evaluations[1:]:
-            again = self._recorded_again(beams, evaluation, len(record.gain))
-            power += again.weight * np.abs(again.gain) ** 2
+    def keep_paths(self, evaluation: Evaluation) -> KeptRecord:
+        """See `PathClass`."""
+        beams, record = self._recorded(evaluation)
+        power = record.weight * (np.abs(record.gain) ** 2).sum(axis=1)
         receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
 
         def steps_of(rows: Ints) -> Steps:
@@ -152,19 +149,15 @@ class BeamClass(ABC, Generic[Beams]):
         guard, n_beams = self._guard_beside(grown), self._n_beams(grown)
         beams, done = self._hit(grown, np.arange(n_beams), ALL_HITS, guard)
         check_whole(guard, done == n_beams, HITS)
-        record = new_record(0)
+        n_paths, record = 0, no_record()
         for _ in range(2):
             each = self._path_bytes(beams) if path_bytes is None else path_bytes
-            taking(guard, int(record.used[0]) * each, PATHS)
-            record = self._recorded_again(beams, evaluation, int(record.used[0]))
+            taking(guard, n_paths * (each + 3 * 16 * evaluation.n_pairs), PATHS)
+            record = new_record(n_paths, evaluation.n_pairs)
+            self._evaluate(beams, evaluation, self._collector(evaluation, record, guard))
+            check_whole(self._tracing.guard, True, PATHS)
+            n_paths = int(record.used[0])
         return beams, record
-
-    def _recorded_again(self, beams: Beams, evaluation: Evaluation, n_paths: int) -> Record:
-        """Return up to that many of the paths of all hits."""
-        guard, record = self._tracing.guard, new_record(n_paths)
-        self._evaluate(beams, evaluation, self._collector(evaluation, record, guard))
-        check_whole(guard, True, PATHS)
-        return record
 
     @abstractmethod
     def _most_walls(self, beams: Beams) -> int:
@@ -181,14 +174,15 @@ class BeamClass(ABC, Generic[Beams]):
         n_max = self._max_interactions(beams)
         return COPIES_OF_PATHS * (24 * (n_max + 2) + STEP_BYTES * n_max + PATH_BYTES + 48)
 
-    def _paths(self, beams: Beams, record: Record) -> Paths:
+    def _paths(self, beams: Beams, record: Record, evaluation: Evaluation) -> Paths:
         n, n_max = len(record.gain), self._max_interactions(beams)
         points, steps = np.zeros((n, n_max + 2, 3)), new_steps(n, n_max)
         self._write_points(beams, record, points, steps)
         check_whole(self._tracing.guard, True, PATHS)
         length = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
         receiver = beams.hits.pair[record.key[:, 0], 0].astype(np.int64)
-        return Paths(receiver, steps.kind, points, length, record.gain, record.weight, steps)
+        gain, pairs = with_all_pairs(record.gain[:, pairs_of(evaluation.tables.unknown)])
+        return Paths(receiver, steps.kind, points, length, gain, record.weight, steps, pairs)
 
 
 def strongest_rows(receiver: Ints, gain: Complexes, count: int) -> Ints:
@@ -197,7 +191,7 @@ def strongest_rows(receiver: Ints, gain: Complexes, count: int) -> Ints:
     Twice as many as `count`: two halves of a grazing path become one later
     (`Paths.with_halves_joined`).
     """
-    order = np.lexsort([-np.abs(gain), receiver])
+    order = np.lexsort([-(np.abs(gain) ** 2).sum(axis=1), receiver])
     first = np.searchsorted(receiver[order], receiver[order])
     return np.sort(order[np.arange(len(order)) - first < 2 * count])
 

@@ -22,13 +22,14 @@ from raytrace.config import TraceConfig
 from raytrace.errors import MemoryLimitError, TraceStoppedError
 from raytrace.grid import Grid
 from raytrace.kernels.guard import Guard
-from raytrace.kernels.sums import add_sums, new_sums, sums_bytes
+from raytrace.kernels.sums import PAIRS, add_sums, new_sums, sums_bytes
 from raytrace.memory import memory_limit
+from raytrace.radio.antennas import polarisations
 from raytrace.radio.transmitter import Transmitter
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import sums_in_work
 from raytrace.solver.dynamic_range import prepare_within_range
-from raytrace.solver.evaluation import evaluations_of
+from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
 from raytrace.solver.setup import prepare
@@ -183,7 +184,8 @@ def estimate_cost(
         lower += [_extrapolated(lower, n) for n in range(len(lower), config.max_reflections)]
     adding_s = _seconds_to_add(sample.n_receivers, config) / sample.n_receivers
     in_work = sums_in_work(sample.n_classes, threads)
-    sums = in_work * sums_bytes(n_receivers, config.max_reflections)
+    n_pairs = PAIRS if len(polarisations(transmitter.antenna)) > 1 else 1
+    sums = in_work * sums_bytes(n_receivers, config.max_reflections, n_pairs)
     return CostEstimate(
         round(sample.paths * n_receivers / sample.n_receivers),
         sample.seconds(n_receivers, threads, adding_s),
@@ -257,8 +259,7 @@ class _Sampler:
         prepare(self.scene, self.transmitter.position, points, none, guard)
         preparing = time.perf_counter() - started
         started = time.perf_counter()
-        evaluations = evaluations_of(self.scene.slabs, self.transmitter, config)
-        evaluation = evaluations[0]
+        evaluation = evaluation_of(self.scene.slabs, self.transmitter, config)
         position = self.transmitter.position
         tracing = prepare_within_range(self.scene, position, points, config, guard, evaluation)
         classes = path_classes(tracing)
@@ -277,7 +278,7 @@ class _Sampler:
                 started = time.perf_counter()
                 sums = path_class.sum_paths(evaluation, beams)
                 taken = time.perf_counter() - started
-                summing += weight * each * taken * len(evaluations)
+                summing += weight * each * taken
                 paths += weight * each * float(sums.n_paths.sum())
                 reached |= sums.power > 0.0
         n_reached = int(np.count_nonzero(reached))

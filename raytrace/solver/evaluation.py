@@ -5,21 +5,18 @@ from collections.abc import Sequence
 from raytrace.config import TraceConfig
 from raytrace.radio.antennas import Antenna
 from raytrace.radio.materials import Slab
-from raytrace.radio.tables import tables_of_polarisations
+from raytrace.radio.tables import field_tables
 from raytrace.radio.transmitter import Transmitter
 from raytrace.solver.path_class import Evaluation
 
 
-def evaluations_of(
+def evaluation_of(
     slabs: Sequence[Slab],
     transmitter: Transmitter,
     config: TraceConfig,
     receive_antenna: Antenna | None = None,
-) -> tuple[Evaluation, ...]:
+) -> Evaluation:
     """Tabulate materials and antennas at the transmitter's frequency.
-
-    One evaluation, or those of antennas of known polarisations whose powers are to be added: each
-    with its part of the power threshold.
 
     Parameters
     ----------
@@ -33,8 +30,7 @@ def evaluations_of(
         The receivers' antenna; a vertical half-wave dipole of 0 dB peak gain by default.
     """
     through_walls = config.max_transmissions != 0
-    tables = tables_of_polarisations(
+    tables = field_tables(
         transmitter, slabs, receive_antenna=receive_antenna, through_walls=through_walls
     )
-    least = 10.0 ** ((config.min_power_dbm - transmitter.power_dbm) / 10.0) / len(tables)
-    return tuple(Evaluation(of, least) for of in tables)
+    return Evaluation(tables, 10.0 ** ((config.min_power_dbm - transmitter.power_dbm) / 10.0))

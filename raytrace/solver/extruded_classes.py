@@ -296,11 +296,13 @@ def _hits_of_tree(
     return hit_points(tracing.scene.view, tree, tracing.targets, numbers, max_hits, guard)
 
 
-def cells_bytes(scene: Scene, n_cells: int, config: TraceConfig, threads: int) -> int:
+def cells_bytes(
+    scene: Scene, n_cells: int, config: TraceConfig, threads: int, n_pairs: int = 1
+) -> int:
     """Memory that the cells of a map take as receivers, with all sums over their paths [bytes]."""
     edges = len(scene.vertical_edges) + 2 * len(scene.horizontal_edges)
     in_work = sums_in_work(1 + config.max_diffractions * edges, threads)
-    return n_cells * RECEIVER_BYTES + in_work * sums_bytes(n_cells, config.max_reflections)
+    return n_cells * RECEIVER_BYTES + in_work * sums_bytes(n_cells, config.max_reflections, n_pairs)
 
 
 def path_classes(tracing: Tracing) -> list[PathClass]:

@@ -6,7 +6,6 @@ Their geometry is traced once. An evaluation then goes through the steps of the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -117,7 +116,7 @@ class KeptPaths:
 def keep_paths(
     workers: Workers,
     classes: list[PathClass],
-    evaluations: Sequence[Evaluation],
+    evaluation: Evaluation,
     n_points: int,
     max_left_out: float,
     guard: Guard,
@@ -130,8 +129,8 @@ def keep_paths(
         The threads; the result does not depend on how many there are.
     classes
         What to find them with.
-    evaluations
-        What their powers are computed with; of several, they are added.
+    evaluation
+        What their powers are computed with.
     n_points
         How many points there are.
     max_left_out
@@ -139,7 +138,7 @@ def keep_paths(
     guard
         What may end the work, with the memory that is left.
     """
-    running = [workers.submit(path_class.keep_paths, evaluations) for path_class in classes]
+    running = [workers.submit(path_class.keep_paths, evaluation) for path_class in classes]
     records = [workers.result(future) for future in running]
     rows, left_out = _chosen(records, n_points, max_left_out)
     n_max = max((len(r) for r in rows), default=0)

@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 from raytrace.arrays import Floats, Ints
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.steps import Steps
-from raytrace.kernels.sums import Sums
+from raytrace.kernels.sums import PAIRS, Sums
 from raytrace.results.paths import Paths
 from raytrace.solver.slab_bounds import shadow_bounds
 
@@ -27,6 +27,11 @@ class Evaluation:
 
     tables: FieldTables
     min_power: float = 0.0
+
+    @property
+    def n_pairs(self) -> int:
+        """Pairs of polarisations that each path has gains between, see `sums.Sums`."""
+        return 1 if self.tables.unknown is None else PAIRS
 
     @cached_property
     def shadow(self) -> Floats:
@@ -80,6 +85,6 @@ class PathClass(Protocol):
         """List the paths one by one, or only so many of each receiver, the strongest."""
         ...
 
-    def keep_paths(self, evaluations: Sequence[Evaluation]) -> KeptRecord:
-        """Find the paths one by one, without their points; add powers of several evaluations."""
+    def keep_paths(self, evaluation: Evaluation) -> KeptRecord:
+        """Find the paths one by one, without their points."""
         ...

@@ -2,6 +2,7 @@
 
 import platform
 import time
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import typer
 
 import floorplans
-from raytrace import TraceConfig, Transmitter, trace_paths
+from raytrace import Isotropic, TraceConfig, Transmitter, received_power, trace_paths
 from raytrace.compilation import watched_compilation
 from raytrace.radio.itu import DEFAULT_EDITION
 from raytrace.threads import n_threads
@@ -73,7 +74,10 @@ def _load_kernels() -> None:
     config = TraceConfig(max_reflections=1, max_diffractions=1, max_transmissions=1)
     radio_map = make_map(plan, config=config)
     receiver = np.array([[*plan.require_start(), 1.0]])
-    trace_paths(scene_of(plan), radio_map.transmitter, receiver, config)
+    scene, unknown = scene_of(plan), Isotropic(polarisation="mean")
+    trace_paths(scene, radio_map.transmitter, receiver, config)
+    sender = replace(radio_map.transmitter, antenna=unknown)
+    received_power(scene, sender, receiver, config, receive_antenna=unknown)
     world = GridWorld.from_map(plan, radio_map)
     for agent in (LocationAgent(), RssAgent(states=ToleranceStates(1.0), terminal_dbm=-30.0)):
         train(world, agent, runs=1, episodes=1)

@@ -17,15 +17,19 @@ from raytrace.kernels.lanes import (
     any_of,
     complex_of,
     copysign,
+    elements_of,
     floor,
     imag_of,
     lane,
     lanes_of,
     load,
+    matrix_of,
     maximum,
     minimum,
     real_of,
+    row_of,
     sqrt,
+    squared_size,
     store,
     where,
     where_complex,
@@ -71,7 +75,20 @@ def complex_numbers(a: Floats, b: Floats, out: Floats) -> None:
     store(out[1], imag_of(w))
 
 
-@pytest.mark.parametrize("kernel", [arithmetic, choices, complex_numbers])
+@jit()
+def matrices(a: Floats, b: Floats, out: Floats) -> None:
+    x, y = load(a), load(b)
+    row = row_of(complex_of(x, y), complex_of(y, 1.0)) * complex_of(y, x) - row_of(
+        complex_of(x, x), complex_of(y, y)
+    )
+    m = matrix_of(row * 0.5, -(x * row)) * complex(0.5, -2.0)
+    m = where_complex(x > y, m + m * y, complex_of(lanes_of(1.0), 2.0))
+    for k, element in enumerate(elements_of(m)):
+        store(out[k], real_of(element) + 3.0 * imag_of(element))
+    store(out[4], squared_size(m) + squared_size(complex_of(x, y)))
+
+
+@pytest.mark.parametrize("kernel", [arithmetic, choices, complex_numbers, matrices])
 def test_compiled_operations_are_those_of_numpy(kernel: Kernel) -> None:
     rng = np.random.default_rng(7)
     for _ in range(20):

@@ -30,6 +30,7 @@ from raytrace import (
 )
 from raytrace.radio.antennas import Amplitudes
 from raytrace.radio.materials import Slab
+from raytrace.results.path_statistics import PathStatistics
 
 Floats = NDArray[np.float64]
 
@@ -122,6 +123,21 @@ def test_maps_and_kept_paths_have_the_same_powers(receive: Antenna) -> None:
     # a dipole's pattern is tabulated in one or in two directions
     rtol = 1e-9 if receive == UNKNOWN else 1e-6
     np.testing.assert_allclose(kept.powers(), expected, rtol=rtol, atol=1e-20)
+
+
+@pytest.mark.parametrize("ends", [(UNKNOWN, UNKNOWN), (HalfWaveDipole(), UNKNOWN)])
+def test_maps_have_the_statistics_of_their_paths(ends: tuple[Antenna, Antenna]) -> None:
+    """The strongest path, of all polarisations together, and the coherent field among them."""
+    room = ROOMS[NAME]
+    grid = Grid.over((0.4, 0.3, 3.4, 2.3), 1.0, 1.2)
+    sender = Transmitter(SENDER.position, antenna=ends[0])
+    radio_map = compute_radio_map(room.scene, sender, grid, CONFIG, receive_antenna=ends[1])
+    paths = trace_paths(room.scene, sender, grid.points(), CONFIG, receive_antenna=ends[1])
+    expected = PathStatistics.of(paths, sender.power_dbm, grid.x.size * grid.y.size)
+    for name in ("rss_dbm", "rss_coherent_dbm", "strongest_path_dbm", "k_factor_db"):
+        layer = getattr(radio_map, name)
+        assert layer is not None
+        np.testing.assert_allclose(layer.ravel(), getattr(expected, name), rtol=0, atol=1e-6)
 
 
 def test_other_materials_and_derivatives() -> None:

@@ -128,4 +128,6 @@ def test_an_unknown_polarisation_has_no_channel(flat: Scene) -> None:
     sending = replace(TRANSMITTER, antenna=Isotropic(polarisation="mean"))
     paths = trace_paths(flat, sending, POINTS, TraceConfig(1, 0))
     with pytest.raises(ValueError, match="polarisation of an antenna is unknown"):
+        paths.impulse_response(20e6)
+    with pytest.raises(ValueError, match="polarisation of an antenna is unknown"):
         channel_matrix(paths)

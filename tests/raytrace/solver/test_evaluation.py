@@ -11,7 +11,7 @@ from raytrace import HalfWaveDipole, Isotropic, Paths, Scene, TraceConfig, Trans
 from raytrace.kernels.sums import Sums
 from raytrace.radio.materials import Slab
 from raytrace.solver.accumulate import sum_paths
-from raytrace.solver.evaluation import evaluations_of
+from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
 from raytrace.solver.setup import prepare
@@ -52,10 +52,10 @@ def grown() -> list[PathClass]:
 
 def evaluated(classes: list[PathClass], variant: str) -> tuple[Sums, list[Paths]]:
     scene, transmitter = VARIANTS[variant]
-    evaluations = evaluations_of(scene.slabs, transmitter, CONFIG)
+    evaluation = evaluation_of(scene.slabs, transmitter, CONFIG)
     with Workers() as workers:
-        sums = sum_paths(workers, classes, evaluations)
-    return sums, [c.list_paths(evaluations[0]) for c in classes]
+        (sums,) = sum_paths(workers, classes, [evaluation])
+    return sums, [c.list_paths(evaluation) for c in classes]
 
 
 def traced(variant: str) -> tuple[Sums, list[Paths]]:
