@@ -286,7 +286,7 @@ class Paths:
         """Check that gains are those of fields, which add up; raise ValueError otherwise."""
         if self.pair_gains is not None:
             raise ValueError(
-                "the polarisation of an antenna is unknown: only powers add up; expected a known one"
+                "the polarisation of an antenna is unknown: only powers add up, not fields"
             )
 
     def at(self, receiver: int) -> Paths:
