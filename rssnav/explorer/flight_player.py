@@ -34,6 +34,8 @@ class FlightPlayer:
         self._training: LiveTraining | None = None
         self._first = np.zeros(1, dtype=np.int64)
         self._going = False
+        self._shown: Flight | None = None
+        self._resting: Flight | None = None
         self._episode = pn.widgets.DiscreteSlider(
             name="Episode", options={"1": 0}, stylesheets=WIDGETS, sizing_mode="stretch_width"
         )
@@ -73,6 +75,13 @@ class FlightPlayer:
             self._player.value = self._player.end
             self._go(None)
 
+    @property
+    def flight(self) -> Flight | None:
+        """The flight that is shown, or while flights are played, the last one before."""
+        if self._player.direction == 0:
+            self._resting = self._shown if self.view.visible else None
+        return self._resting
+
     def show(self, wanted: bool) -> None:
         """Show the player and its flight if wanted and if there are flights."""
         visible = wanted and self._first.size > 1
@@ -87,6 +96,7 @@ class FlightPlayer:
         index, fraction = flight_at(self._first, self._player.value)
         flight = self._training.flights[index]
         step = round(fraction * flight.steps)
+        self._shown = flight
         self._show(flight, step)
         self._text.object = _words(flight, step, self._training.settings.episodes)
         self._going = True

@@ -9,6 +9,7 @@ import math
 import re
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import floorplans
@@ -19,10 +20,13 @@ from rssnav.explorer.plan_size import PlanSize
 from rssnav.messages import describe
 
 TOML = ".toml"
+SESSION = ".rssnav"
 RESULT = "result"
 """Name of the file that the plan's TOML text is written to."""
 REPORT = "report"
 """Name of the file for a JSON list of lines on the import; there is none for a TOML file."""
+SAVED = "saved"
+"""Name of the file for what a session's file holds beside the plan."""
 ENTITY_MARKS = {
     suffix: re.compile(kind.entity) for kind in FORMATS for suffix in kind.text_suffixes
 }
@@ -35,7 +39,7 @@ def main(file: str, limits: str) -> int:
     limit_process(chosen)
     path = Path(file)
     try:
-        text = read_toml(path, chosen) if path.suffix == TOML else import_file(path, chosen)
+        text = READERS.get(path.suffix, import_file)(path, chosen)
         Path(RESULT).write_text(text, encoding="utf-8", newline="\n")
     except RecursionError:
         return refuse(f"{file}: arrays or tables are nested too deeply")
@@ -56,9 +60,31 @@ def refuse(reason: str) -> int:
 
 def read_toml(path: Path, limits: Limits) -> str:
     """TOML text of the plan in a TOML file, without comments."""
-    text = path.read_text(encoding="utf-8")
-    limits.check_size(PlanSize.of_table(tomllib.loads(text)), path.name)
-    return floorplans.dumps(floorplans.loads(text, origin=path.name))
+    return checked_toml(path.read_text(encoding="utf-8"), path.name, limits)
+
+
+def checked_toml(text: str, origin: str, limits: Limits) -> str:
+    """TOML text of the plan in a text, without comments."""
+    limits.check_size(PlanSize.of_table(tomllib.loads(text)), origin)
+    return floorplans.dumps(floorplans.loads(text, origin=origin))
+
+
+def read_session(path: Path, limits: Limits) -> str:
+    """TOML text of the plan in the file of a session; the rest is written to `SAVED`."""
+    from rssnav.explorer.session_file import SavedSession  # it loads the learning rules
+
+    if path.stat().st_size > limits.session_bytes:
+        raise PlanError(
+            f"{path.stat().st_size} bytes; the explorer accepts sessions of at most "
+            f"{limits.session_bytes}",
+            origin=path.name,
+        )
+    try:
+        saved = SavedSession.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise PlanError(" ".join(str(error).split()), origin=path.name) from error
+    Path(SAVED).write_text(replace(saved, plan="").dumps(), encoding="utf-8")
+    return checked_toml(saved.plan, path.name, limits)
 
 
 def import_file(path: Path, limits: Limits) -> str:
@@ -74,6 +100,10 @@ def import_file(path: Path, limits: Limits) -> str:
     limits.check_size(PlanSize.of(imported.plan), path.name)
     Path(REPORT).write_text(json.dumps(imported.report), encoding="utf-8")
     return imported.toml()
+
+
+READERS = {TOML: read_toml, SESSION: read_session}
+"""Readers of the files that are not of another program, by suffix."""
 
 
 def limit_process(limits: Limits) -> None:

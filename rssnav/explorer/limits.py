@@ -27,12 +27,16 @@ class Limits:
         Maximum sizes of an uploaded file, and of the TOML text of its plan [bytes].
     survey_bytes : int
         Maximum size of an uploaded survey [bytes].
+    session_bytes : int
+        Maximum size of an uploaded session, with its plan and survey [bytes].
     entities : int
         Maximum number of entities of a drawing, model or collection.
     walls, openings, outline_points : int
         Maximum numbers of straight walls, openings and corners of outline and courtyards of a plan.
     cells : int
         Maximum number of cells of a map.
+    csv_rows : int
+        Maximum number of paths in a file.
     work : int
         Maximum of walls times cells; the time of a map is roughly proportional to it.
     map_s : float
@@ -52,11 +56,13 @@ class Limits:
     upload_bytes: int = 8_000_000
     plan_bytes: int = 2_000_000
     survey_bytes: int = 1_000_000
+    session_bytes: int = 4_000_000
     entities: int = 100_000
     walls: int = 1500
     openings: int = 1500
     outline_points: int = 1500
     cells: int = 40_000
+    csv_rows: int = 100_000
     work: int = 15_000_000
     map_s: float = 300.0
     trace_bytes: int = 1_000_000_000

@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from bokeh.events import Pan, PanEnd, PanStart, Tap
+from bokeh.events import Tap
 from bokeh.models import (
     ColorBar,
     ColumnDataSource,
-    DataRange1d,
     HoverTool,
     Image,
     LinearColorMapper,
-    PanTool,
-    PointDrawTool,
-    ResetTool,
-    WheelZoomTool,
 )
 from bokeh.palettes import RdBu11, Viridis256
-from bokeh.plotting import figure
-from matplotlib import colormaps
-from matplotlib.colors import to_hex
 from numpy.typing import NDArray
-from shapely import get_coordinates
 
 from floorplans import FloorPlan
-from floorplans.pictures.legend import SOURCE, START
+from floorplans.pictures.legend import SOURCE
 from raytrace import RadioMap
+from rssnav.explorer.cell_paths import path_colours
 from rssnav.explorer.hover import (
     EMPTY_READINGS,
     READING_ROWS,
@@ -39,26 +30,22 @@ from rssnav.explorer.hover import (
     reading_columns,
     written_in,
 )
+from rssnav.explorer.map_drawing import FONT, draw_floor, draw_walls, empty_figure
+from rssnav.explorer.map_marks import Marks, are_numbers
 from rssnav.explorer.survey_layer import Residuals
 from rssnav.explorer.tracing import TracedMap
 from rssnav.maps import cells_inside
-from rssnav.pictures.radio_map import FREE_WALL, NO_PATH
+from rssnav.pictures.radio_map import NO_PATH
 from rssnav.pictures.style import AGENT_COLOURS, INK
 
-FONT = "Inter, system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
-FLOOR = "#fbfaf7"
-PATH_COLOURS = "YlOrRd"
-PATH_RANGE_DB = 30.0
-"""Paths this much weaker than the strongest have the lightest colour."""
+KEYS = "keys"
+"""Name of the data that the page's script fills with the arrow and Enter keys."""
 
 FADED, PLAIN = 0.35, 1.0
 TRAIL = 120
 """Latest steps of a flight, drawn in full colour."""
 
-MARKS = ("source", "start")
-MARK_REACH = 0.03
-"""Largest distance from a mark at which a drag begins, as a fraction of the plan's longer side."""
-
+HATCH = "#b5b5b5"
 _EMPTY_LINES: dict[str, list[Any]] = {"xs": [], "ys": []}
 RESIDUALS_DB = 10.0
 """Measured minus traced RSS that has the darkest colour: red for a stronger reading, or blue."""
@@ -80,6 +67,9 @@ class MapFigure:
         Called likewise while a mark is dragged.
     on_tap : callable
         Called with x and y [m] of a tap.
+    on_step : callable
+        Called with the steps (right, up) that an arrow key asks for, each -1, 0 or 1; (0, 0) for
+        the Enter key.
 
     Attributes
     ----------
@@ -94,12 +84,11 @@ class MapFigure:
         on_move: Callable[[str, float, float], None],
         on_drag: Callable[[str, float, float], None],
         on_tap: Callable[[float, float], None],
+        on_step: Callable[[int, int], None],
     ) -> None:
-        self._on_move, self._on_drag = on_move, on_drag
         self._plan = plan
-        self._dragged: str | None = None
-        self.model = _empty_figure()
-        self._draw_floor(plan)
+        self.model = empty_figure()
+        draw_floor(self.model, plan)
         self._mapper = LinearColorMapper(
             palette=Viridis256, low=-1.0, high=0.0, low_color="#00000000", nan_color="#00000000"
         )
@@ -108,7 +97,7 @@ class MapFigure:
         )
         self._uncovered = ColumnDataSource(dict(_EMPTY_POINTS))
         self._draw_map()
-        self._draw_walls(plan, height_m)
+        draw_walls(self.model, plan, height_m)
         self._survey = ColumnDataSource(dict(EMPTY_READINGS))
         self._draw_survey()
         self._cell = ColumnDataSource(dict(_EMPTY_POINTS))
@@ -118,11 +107,13 @@ class MapFigure:
         self._trail = ColumnDataSource(dict(_EMPTY_POINTS))
         self._uav = ColumnDataSource(dict(_EMPTY_POINTS))
         self._draw_overlays()
-        self._marks = ColumnDataSource(_mark_columns(plan))
-        self._draw_marks()
+        self._marks = Marks(self.model, plan, on_move, on_drag)
         self._on_tap = on_tap
         self.model.on_event(Tap, self._tapped)
-        self._follow_drags()
+        self._on_step = on_step
+        keys = ColumnDataSource({"right": [], "up": [], "count": []}, name=KEYS)
+        keys.on_change("data", self._pressed)
+        self.model.tags = [keys]
 
     def show_map(self, radio_map: RadioMap, traced: TracedMap | None = None) -> None:
         """Show a map's RSS, and its other layers and the best server in the tooltip."""
@@ -151,7 +142,7 @@ class MapFigure:
     def show_marks(self, plan: FloorPlan) -> None:
         """Move the marks to the plan's source and start."""
         self._plan = plan
-        self._marks.data = _mark_columns(plan)
+        self._marks.show(plan)
 
     def show_survey(self, found: Residuals | None, server: str) -> None:
         """Draw the readings of a transmitter, or of all, coloured by measured minus traced RSS."""
@@ -211,25 +202,12 @@ class MapFigure:
         for source in (self._flight, self._trail, self._uav):
             source.data = _points(self._flown)
 
-    def _draw_floor(self, plan: FloorPlan) -> None:
-        rings = [get_coordinates(r) for r in (plan.outline.exterior, *plan.outline.interiors)]
-        floor = self.model.multi_polygons(
-            xs=[[[ring[:, 0].tolist() for ring in rings]]],
-            ys=[[[ring[:, 1].tolist() for ring in rings]]],
-            fill_color=FLOOR,
-            line_color=None,
-        )
-        for axis in (self.model.x_range, self.model.y_range):
-            axis.update(renderers=[floor])
-        x_min, y_min, x_max, y_max = plan.bounds
-        self.model.xaxis.bounds, self.model.yaxis.bounds = (x_min, x_max), (y_min, y_max)
-
     def _draw_map(self) -> None:
         glyph = Image(image="rss", x="x", y="y", dw="dw", dh="dh", color_mapper=self._mapper)
         self._picture = self.model.add_glyph(self._image, glyph)
         self._uncovered_cells = self.model.rect(
             "x", "y", 1.0, 1.0, source=self._uncovered, fill_color=NO_PATH, line_color=None,
-            hatch_pattern="cross", hatch_color="#b5b5b5", hatch_scale=7, hatch_weight=0.5,
+            hatch_pattern="cross", hatch_color=HATCH, hatch_scale=7, hatch_weight=0.5,
         )  # fmt: skip
         self._hover = HoverTool(
             renderers=[self._picture],
@@ -241,6 +219,7 @@ class MapFigure:
         bar = ColorBar(
             color_mapper=self._mapper, title="RSS [dBm]", height=10, padding=4,
             title_text_font=FONT, title_text_font_style="normal", title_text_font_size="12px",
+            title_text_color=INK, major_label_text_color=INK,
             major_label_text_font=FONT, major_label_text_font_size="11px", bar_line_color=None,
             major_tick_line_color=None, background_fill_color=None,
         )  # fmt: skip
@@ -255,24 +234,6 @@ class MapFigure:
         hover = HoverTool(renderers=[readings], tooltips=READING_ROWS, visible=False)
         hover.formatters = {"@traced": written_in("dBm"), "@residual": written_in("dB")}
         self.model.add_tools(hover)
-
-    def _draw_walls(self, plan: FloorPlan, height_m: float) -> None:
-        whole = np.array([(wall.start, wall.end) for wall in plan.walls])
-        for lines, colour, width in (
-            (whole, FREE_WALL, 1.5),
-            (plan.solid_segments(height_m), INK, 2.4),
-        ):
-            xs, ys = ([*lines[:, :, axis]] for axis in (0, 1))
-            self.model.multi_line(xs, ys, line_color=colour, line_width=width, line_cap="square")
-        columns = [
-            get_coordinates(r.polygon.exterior) for r in plan.solid_regions if height_m <= r.top_m
-        ]
-        self.model.multi_polygons(
-            xs=[[[ring[:, 0].tolist()]] for ring in columns],
-            ys=[[[ring[:, 1].tolist()]] for ring in columns],
-            fill_color=INK,
-            line_color=None,
-        )
 
     def _draw_overlays(self) -> None:
         self._frame = self.model.rect(
@@ -289,115 +250,15 @@ class MapFigure:
             "x", "y", source=self._uav, size=15, marker="diamond", line_color="white", line_width=2
         )
 
-    def _draw_marks(self) -> None:
-        marks = self.model.scatter(
-            "x", "y", source=self._marks, marker="marker", size="size", fill_color="colour",
-            line_color="white", line_width=2, nonselection_alpha=1.0,
-        )  # fmt: skip
-        tool = PointDrawTool(
-            renderers=[marks],  # pyright: ignore[reportArgumentType]
-            add=False,
-            num_objects=len(MARKS),
-            description="Drag source and start",
-        )
-        self.model.add_tools(tool)
-        self.model.toolbar.active_drag = tool
-        self._marks.on_change("data", self._moved)
+    def _pressed(self, _name: str, _old: object, new: dict[str, Any]) -> None:
+        """Report an arrow or Enter key; what the page does not send is ignored."""
+        steps = [list(new.get(name, ())) for name in ("right", "up")]
+        if all(len(step) == 1 and type(step[0]) is int and -1 <= step[0] <= 1 for step in steps):
+            self._on_step(steps[0][0], steps[1][0])
 
     def _tapped(self, event: Any) -> None:
-        if _are_numbers(event.x, event.y):
+        if are_numbers(event.x, event.y):
             self._on_tap(event.x, event.y)
-
-    def _moved(self, _name: str, _old: object, new: dict[str, Any]) -> None:
-        """Report a mark that was dropped elsewhere; restore those that are not two points."""
-        x, y = (list(new.get(name, ())) for name in ("x", "y"))
-        if not len(x) == len(y) == len(MARKS) or not _are_numbers(*x, *y):
-            self._marks.data = _mark_columns(self._plan)
-            return
-        for which, *dropped, before in zip(MARKS, x, y, _mark_positions(self._plan), strict=True):
-            if tuple(dropped) != before:
-                self._on_move(which, *map(float, dropped))
-
-    def _follow_drags(self) -> None:
-        """Report the position of a mark while it is dragged."""
-
-        def begin(event: Any) -> None:
-            at = (event.x, event.y)
-            self._dragged = self._mark_at(*at) if _are_numbers(*at) else None
-
-        def go_on(event: Any) -> None:
-            if self._dragged is not None and _are_numbers(event.x, event.y):
-                self._on_drag(self._dragged, event.x, event.y)
-
-        def end(_event: Any) -> None:
-            self._dragged = None
-
-        self.model.on_event(PanStart, begin)
-        self.model.on_event(Pan, go_on)
-        self.model.on_event(PanEnd, end)
-
-    def _mark_at(self, x: float, y: float) -> str | None:
-        """Return the mark at a point [m]; None if there is none."""
-        x_min, y_min, x_max, y_max = self._plan.bounds
-        distance_m = np.hypot(*(np.array(_mark_positions(self._plan)) - (x, y)).T)
-        nearest = int(np.argmin(distance_m))
-        reach_m = MARK_REACH * max(x_max - x_min, y_max - y_min)
-        return MARKS[nearest] if distance_m[nearest] < reach_m else None
-
-
-def path_colours(power_dbm: NDArray[np.float64]) -> list[str]:
-    """Colour of each path (n,), dark for the strongest, light 30 dB below it."""
-    if not power_dbm.size:
-        return []
-    weakness = np.clip((power_dbm.max() - power_dbm) / PATH_RANGE_DB, 0.0, 1.0)
-    return [to_hex(colour) for colour in colormaps[PATH_COLOURS](0.95 - 0.7 * weakness)]
-
-
-def _empty_figure() -> figure:
-    """Return a figure true to scale, without frame lines and without the library's logo."""
-    model = figure(
-        sizing_mode="stretch_both",
-        min_height=280,
-        match_aspect=True,
-        tools=[PanTool(), WheelZoomTool(), ResetTool()],
-        toolbar_location="right",
-        x_range=DataRange1d(range_padding=0.02),
-        y_range=DataRange1d(range_padding=0.02),
-        outline_line_color=None,
-        background_fill_color=None,
-        border_fill_color=None,
-    )
-    model.toolbar.logo = None
-    model.grid.visible = False
-    for axis, name in ((model.xaxis, "x [m]"), (model.yaxis, "y [m]")):
-        axis.update(
-            axis_label=name, axis_line_color="#b0aca2", major_tick_in=0, minor_tick_line_color=None,
-            major_tick_line_color="#b0aca2", axis_label_text_font=FONT, major_label_text_font=FONT,
-            axis_label_text_font_style="normal", axis_label_text_color=INK,
-        )  # fmt: skip
-    return model
-
-
-def _mark_positions(plan: FloorPlan) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Positions (x, y) [m] of source and start."""
-    return plan.require_source()[:2], plan.require_start()
-
-
-def _mark_columns(plan: FloorPlan) -> dict[str, Any]:
-    """Data columns of the source and start marks."""
-    x, y = zip(*_mark_positions(plan), strict=True)
-    return {
-        "x": list(x),
-        "y": list(y),
-        "marker": ["star", "circle"],
-        "size": [26, 17],
-        "colour": [SOURCE, START],
-    }
-
-
-def _are_numbers(*values: object) -> bool:
-    """Whether all values, which come from the browser, are finite numbers."""
-    return all(isinstance(value, int | float) and math.isfinite(value) for value in values)
 
 
 def _points(position: NDArray[np.float64]) -> dict[str, Any]:

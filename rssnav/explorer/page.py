@@ -5,16 +5,21 @@ from typing import Any
 import numpy as np
 import panel as pn
 
-from rssnav.explorer.cell_panel import CellPanel, page_3d, strongest
+from rssnav.explorer.cell_panel import CellPanel
+from rssnav.explorer.cell_paths import strongest
 from rssnav.explorer.downloads import Downloads
 from rssnav.explorer.flight_player import FlightPlayer
+from rssnav.explorer.help_panel import LEGEND, HelpPanel
 from rssnav.explorer.map_figure import MapFigure
+from rssnav.explorer.map_panel import MapPanel
 from rssnav.explorer.plan_panel import PlanPanel
 from rssnav.explorer.session import Session
+from rssnav.explorer.space_view import page_3d
 from rssnav.explorer.styles import (
     FRAME,
     PAGE,
     PAGE_CSS,
+    PAGE_JS,
     WIDGETS,
     map_words,
     plan_words,
@@ -27,8 +32,8 @@ from rssnav.explorer.training_panel import TrainingPanel
 from rssnav.kernel_cache import tracer_cache
 
 POLL_MS = 100
-CELL_TAB, TRAINING_TAB = 1, 2
-PLAN_VIEW, SPACE_VIEW = "Plan", "3D"
+PATHS_TAB, TRAINING_TAB = 1, 2
+FLAT_VIEW, SPACE_VIEW = "2D", "3D"
 
 
 class Changes:
@@ -57,10 +62,11 @@ class Frame:
     def __init__(self) -> None:
         self._regions = {
             name: pn.Column(sizing_mode="stretch_both" if name == "view" else "stretch_width")
-            for name in ("bar", "view", "status", "player", "tools")
+            for name in ("bar", "view", "legend", "status", "player", "tools")
         }
         self.template = pn.Template(PAGE, items=self._regions)
         self.template.add_variable("page_css", PAGE_CSS)
+        self.template.add_variable("page_js", PAGE_JS)
 
     def fill(self, **parts: Any) -> None:
         """Place a part in each region named."""
@@ -84,13 +90,13 @@ class Page:
         self._session = session
         self._changes = Changes()
         self._compiles = not tracer_cache().n_compiled
-        self._plan_panel = PlanPanel(session)
+        self._plan_panel, self._map_panel = PlanPanel(session), MapPanel(session)
         self._cell_panel = CellPanel(session)
         self._training_panel = TrainingPanel(session)
         self._downloads = Downloads(session)
         self._player = FlightPlayer(self._show_flight)
         self._views = pn.widgets.RadioButtonGroup(
-            options=[PLAN_VIEW, SPACE_VIEW], value=PLAN_VIEW, stylesheets=WIDGETS, width=130
+            options=[FLAT_VIEW, SPACE_VIEW], value=FLAT_VIEW, stylesheets=WIDGETS, width=130
         )
         self._views.param.watch(self._switch_view, "value")
         self._name, self._status = (
@@ -100,11 +106,13 @@ class Page:
         self._space = pn.pane.HTML(
             "", sizing_mode="stretch_both", visible=False, stylesheets=[FRAME]
         )
+        setup = pn.Column(self._plan_panel.view, self._map_panel.view, sizing_mode="stretch_width")
         self._tabs = pn.Tabs(
-            ("Plan", self._plan_panel.view),
-            ("Cell", self._cell_panel.view),
+            ("Setup", setup),
+            ("Paths", self._cell_panel.view),
             ("Training", self._training_panel.view),
-            ("Download", self._downloads.view),
+            ("Files", self._downloads.view),
+            ("Help", HelpPanel().view),
             stylesheets=WIDGETS,
             sizing_mode="stretch_width",
         )
@@ -116,6 +124,9 @@ class Page:
         frame.fill(
             bar=pn.Row(self._name, self._views, sizing_mode="stretch_width"),
             view=pn.Column(self._canvas, self._space, sizing_mode="stretch_both"),
+            legend=pn.pane.HTML(
+                f'<p class="legend">{LEGEND}</p>', stylesheets=WIDGETS, sizing_mode="stretch_width"
+            ),
             status=self._status,
             player=self._player.view,
             tools=self._tabs,
@@ -126,16 +137,19 @@ class Page:
         session = self._session
         if session.take_upload():
             self._plan_panel.empty_upload()
+        session.resume()
         if self._changes.of("building", session.plan.walls, session.settings.height_m):
             self._new_figure()
         if self._changes.of("plan", session.plan, session.settings, session.import_report):
             self._figure.show_marks(session.plan)
             self._plan_panel.show()
+            self._map_panel.show()
             self._name.object = plan_words(session.plan)
         self._show_map()
         self._show_survey()
         self._show_paths()
         self._show_training()
+        self._show_space()
         self._status.object = self._status_words()
 
     def _new_figure(self) -> None:
@@ -149,6 +163,7 @@ class Page:
             on_move=self._move,
             on_drag=self._drag,
             on_tap=self._tap,
+            on_step=self._step,
         )
         self._canvas.object = self._figure.model
 
@@ -165,7 +180,14 @@ class Page:
     def _tap(self, x: float, y: float) -> None:
         self._session.choose_cell(x, y)
         if self._session.cell is not None:
-            self._tabs.active = CELL_TAB
+            self._tabs.active = PATHS_TAB
+
+    def _step(self, right: int, up: int) -> None:
+        """Choose the next cell; with the Enter key, show the paths to it."""
+        if (right, up) == (0, 0):
+            self._tabs.active = PATHS_TAB
+        if self._session.cell is None or (right, up) != (0, 0):
+            self._session.step_cell(right, up)
 
     def _show_map(self) -> None:
         """Show a new map; the last one stays until it is there."""
@@ -200,11 +222,12 @@ class Page:
             lines = strongest(found)
             self._figure.show_paths(lines, found.power_dbm[: len(lines)])
         self._cell_panel.show()
-        self._show_space()
 
     def _show_training(self) -> None:
         training, complete = self._session.training, self._session.complete_map is not None
         progress = (0, False) if training is None else (training.steps.size, training.running)
+        if training is not None and self._changes.of("settings", training):
+            self._training_panel.adopt(training.settings)
         if self._changes.of("training", training, complete, *progress):
             self._training_panel.show()
             self._player.follow(training)
@@ -222,18 +245,22 @@ class Page:
             self._figure.hide_flight()
 
     def _switch_view(self, event: Any) -> None:
-        """Show the plan, or the building in 3D."""
+        """Show the map, or the building in 3D."""
         self._space.visible = event.new == SPACE_VIEW
-        self._canvas.visible = event.new == PLAN_VIEW
+        self._canvas.visible = event.new == FLAT_VIEW
         self._show_space()
 
     def _show_space(self) -> None:
-        """Update the 3D view if it is visible."""
-        session = self._session
-        if not self._space.visible:
+        """Update the 3D view if it is visible: paths, or with the training tab a flight."""
+        session, maps = self._session, self._session.maps
+        if not self._space.visible or maps.progress is not None:
             return
-        if self._changes.of("space", session.plan, session.paths.latest):
-            self._space.object = page_3d(session.plan, session.paths.latest)
+        trains = self._tabs.active == TRAINING_TAB
+        found = None if trains else session.paths.latest
+        flight = self._player.flight if trains else None
+        agent = "rss" if session.training is None else session.training.settings.agent
+        if self._changes.of("space", session.plan, maps.latest, found, flight):
+            self._space.object = page_3d(session.plan, found, maps.latest, flight, agent)
 
     def _status_words(self) -> str:
         """HTML of the map's progress, or of what is wrong."""

@@ -24,8 +24,8 @@ class Range:
     step: float = 1.0
     whole: bool = False
 
-    def check(self, value: object) -> None:
-        """Raise ValueError for anything but a number in the range."""
+    def check(self, value: object, name: str = "") -> None:
+        """Raise ValueError for anything but a number in the range, by its name or the label."""
         kind = int if self.whole else (int, float)
         if isinstance(value, bool) or not isinstance(value, kind):
             what = "a whole number" if self.whole else "a number"
@@ -33,7 +33,7 @@ class Range:
             return
         else:
             what = f"{self.low:g} to {self.high:g}"
-        raise ValueError(f"{self.label}: {shortened(value)} must be {what}")
+        raise ValueError(f"{name or self.label}: {shortened(value)} must be {what}")
 
 
 def shortened(value: object, most: int = 40) -> str:

@@ -4,35 +4,38 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
-
 import floorplans
 from floorplans import FloorPlan, PlanError
 from floorplans.transmitters import ALL
-from raytrace import Grid, RadioMap
+from raytrace import Grid
 from rssnav.explorer.background import FileMaker, NewestOnly, Ticket
+from rssnav.explorer.cell_paths import Position
 from rssnav.explorer.fair_turns import FairTurns, TabTurns
 from rssnav.explorer.limits import Limits
-from rssnav.explorer.places import with_source_and_start
-from rssnav.explorer.survey_layer import CSV, SurveyTracer, example, read_survey_upload
+from rssnav.explorer.map_settings import MapSettings
+from rssnav.explorer.places import Point, cell_at, nearest_centre, with_source_and_start
+from rssnav.explorer.session_file import SavedSession
+from rssnav.explorer.survey_layer import (
+    CSV,
+    SurveyFile,
+    SurveyTracer,
+    example,
+    read_survey_upload,
+)
 from rssnav.explorer.tracing import (
     LatestScene,
     MapCache,
-    MapSettings,
     MapTracer,
     PathFinder,
     TracedMap,
 )
 from rssnav.explorer.training import LiveTraining, TrainingSettings
 from rssnav.explorer.uploads import Upload, read_upload
-from rssnav.measurements.survey import Survey
-from rssnav.presets import PRESETS, default_preset
+from rssnav.presets import PresetName, default_preset
 from rssnav.transmitters import SOURCE
 
 PLACE_DIGITS = 2
 """A dragged source is rounded to centimetres."""
-
-Point = tuple[float, float]
 
 
 class Session:
@@ -78,6 +81,7 @@ class Session:
     ) -> None:
         self.limits = limits or Limits()
         self.settings = MapSettings()
+        self._preset: PresetName = "paper"
         scenes = LatestScene()
         self._turns = TabTurns(turns or FairTurns(self.limits.jobs))
         self.maps = MapTracer(self.limits, cache or MapCache(), scenes, self._turns)
@@ -88,8 +92,9 @@ class Session:
         self.problem = ""
         self._reader = NewestOnly("upload", self._turns)
         self.files = FileMaker(self._turns)
-        self._uploaded: Upload | Survey | str | None = None
+        self._uploaded: Upload | SurveyFile | str | None = None
         self.import_report: tuple[str, ...] = ()
+        self._resuming: SavedSession | None = None
         self.open_plan(plan)
 
     def close(self) -> None:
@@ -116,16 +121,62 @@ class Session:
         height_m = self.settings.height_m
         if not height_m < plan.height_m:
             height_m = round(plan.height_m / 2, PLACE_DIGITS)
-        settings = replace(_of_preset(self.settings, plan), height_m=height_m)
+        preset = _preset_of(plan)
+        of_kind = self.settings if preset == self._preset else self.settings.with_preset(preset)
+        self._open(plan, replace(of_kind, height_m=height_m, server=SOURCE))
+
+    def _open(self, plan: FloorPlan, settings: MapSettings) -> None:
+        """Replace all that is open, and trace the map."""
+        settings.check_height(plan)
         self.limits.check_cells(plan, settings.cell_size_m)
         self._drop_training()
         self.maps.forget()
         self.paths.forget()
         self.survey.forget()
         self.cell, self.problem, self.import_report = None, "", ()
-        self.plan, self.settings = plan, settings
+        self.plan, self.settings, self._preset = plan, settings, _preset_of(plan)
         self._snap_start()
         self.maps.request(self.plan, self.settings)
+
+    def saved(self) -> SavedSession:
+        """Return what is needed to open the session again."""
+        cell, file = None, self.survey.file
+        if self.cell is not None:
+            i_y, i_x = self.cell
+            cell = float(self.grid.x[i_x]), float(self.grid.y[i_y])
+        training = None if self.training is None else self.training.settings
+        text = None if file is None else file.text
+        return SavedSession(floorplans.dumps(self.plan), self.settings, cell, training, text)
+
+    def open_saved(
+        self, saved: SavedSession, plan: FloorPlan, survey: SurveyFile | None = None
+    ) -> None:
+        """Open a saved session; its cell and training follow by `resume`, once the map is there.
+
+        Raises
+        ------
+        PlanError
+            For one that does not fit its plan; the open one stays.
+        """
+        self.limits.check_plan(plan)
+        plan, server = with_source_and_start(plan), saved.settings.server
+        if server not in (SOURCE, ALL, *(t.id for t in plan.transmitters)):
+            raise PlanError(f"map.transmitter: {server!r} is none of the plan", origin=plan.name)
+        self._open(plan, saved.settings)
+        self._resuming = saved
+        if survey is not None:
+            self.survey.open(survey, self.plan, self.settings)
+
+    def resume(self) -> None:
+        """Select the cell and repeat the training of a saved session when its map is complete."""
+        saved, latest = self._resuming, self.maps.latest
+        if saved is None or latest is None or not latest.complete:
+            return
+        self._resuming = None
+        if saved.cell is not None:
+            self.choose_cell(*saved.cell)
+        if saved.training is not None and self.settings.server != ALL:
+            self.train(saved.training)
 
     def open_builtin(self, name: str) -> None:
         """Open a built-in plan."""
@@ -163,7 +214,7 @@ class Session:
         found, self._uploaded = self._uploaded, None
         if isinstance(found, Upload):
             self._try(partial(self._open_upload, found))
-        elif isinstance(found, Survey):
+        elif isinstance(found, SurveyFile):
             self.problem = ""
             self.survey.open(found, self.plan, self.settings)
         elif found is not None:
@@ -171,6 +222,9 @@ class Session:
         return found is not None
 
     def _open_upload(self, upload: Upload) -> None:
+        if upload.saved is not None:
+            self.open_saved(upload.saved, upload.plan, upload.survey)
+            return
         self.open_plan(upload.plan)
         self.import_report = upload.report
 
@@ -204,9 +258,21 @@ class Session:
     def move_start(self, x: float, y: float) -> None:
         """Move the start to the cell centre nearest to a point [m], if it can be there."""
         before = self.plan
-        self._try(lambda: self._replace_plan(replace(before, start=_nearest(self.grid, x, y))))
+        self._try(
+            lambda: self._replace_plan(replace(before, start=nearest_centre(self.grid, x, y)))
+        )
         if self.plan is not before:
             self._drop_training()
+
+    def change(self, settings: MapSettings, source: Position, start: Point) -> None:
+        """Move source and start [m] and change the settings, until one of these is rejected."""
+        self.problem = ""
+        if source != self.plan.source:
+            self.move_source(*source)
+        if not self.problem and start != self.plan.start:
+            self.move_start(*start)
+        if not self.problem:
+            self.change_settings(settings)
 
     def change_settings(self, settings: MapSettings) -> None:
         """Trace the map with other settings; those that do not fit the plan are rejected."""
@@ -226,14 +292,25 @@ class Session:
         self.survey.request(self.plan, settings)
 
     def choose_cell(self, x: float, y: float) -> None:
-        """Select the cell at a point [m] and trace its paths; none outside the building."""
+        """Select the cell at a point [m] and trace its paths; none outside the map."""
+        self._select(cell_at(self.grid, x, y))
+
+    def step_cell(self, right: int, up: int) -> None:
+        """Select a cell so many cells away, at most at the edge; at first that of the start."""
         grid = self.grid
-        i_x, i_y = (
-            int(np.floor((at - centres[0]) / grid.cell_size_m + 0.5))
-            for at, centres in ((x, grid.x), (y, grid.y))
-        )
-        inside = 0 <= i_x < len(grid.x) and 0 <= i_y < len(grid.y)
-        self.cell = (i_y, i_x) if inside else None
+        if self.cell is None:
+            self.choose_cell(*self.plan.require_start())
+            return
+        i_y, i_x = self.cell
+        i_x = min(max(i_x + right, 0), len(grid.x) - 1)
+        i_y = min(max(i_y + up, 0), len(grid.y) - 1)
+        if (i_y, i_x) != self.cell:
+            self._select((i_y, i_x))
+
+    def _select(self, cell: tuple[int, int] | None) -> None:
+        self.cell = cell
+        if self._resuming is not None:
+            self._resuming = replace(self._resuming, cell=None)
         self._find_paths()
 
     def _find_paths(self) -> None:
@@ -286,11 +363,11 @@ class Session:
 
     def _drop_training(self) -> None:
         self.stop_training()
-        self.training = None
+        self.training, self._resuming = None, None
 
     def _snap_start(self) -> None:
         """Move the start to a cell centre, if the plan allows it."""
-        start = _nearest(self.grid, *self.plan.require_start())
+        start = nearest_centre(self.grid, *self.plan.require_start())
         if start != self.plan.start:
             self._try(lambda: self._replace_plan(replace(self.plan, start=start)))
 
@@ -306,25 +383,8 @@ class Session:
             self.problem = str(error)
 
 
-def _of_preset(settings: MapSettings, plan: FloorPlan) -> MapSettings:
-    """Settings for another plan: built-in ones have opaque walls, as the reproduced paper has."""
+def _preset_of(plan: FloorPlan) -> PresetName:
+    """Preset of a plan: built-in ones have opaque walls, as the reproduced paper has."""
     is_builtin = plan.name in floorplans.builtin_names()
     is_own = not is_builtin or floorplans.load(plan.name).walls != plan.walls
-    preset = default_preset("" if is_own else plan.name)
-    if preset == settings.preset:
-        return replace(settings, server=SOURCE)
-    reflections = PRESETS[preset].config.max_reflections
-    return replace(settings, preset=preset, max_reflections=reflections, server=SOURCE)
-
-
-def suggested_goal_dbm(radio_map: RadioMap, usual_dbm: float) -> float:
-    """Goal level [dBm] for a map: the usual one, or one that its strongest cells exceed."""
-    covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
-    strongest = float(covered.max()) if covered.size else usual_dbm
-    return usual_dbm if strongest > usual_dbm else float(np.floor(strongest - 1.0))
-
-
-def _nearest(grid: Grid, x: float, y: float) -> Point:
-    """Cell centre nearest to a point [m]."""
-    i_x, i_y = int(np.argmin(np.abs(grid.x - x))), int(np.argmin(np.abs(grid.y - y)))
-    return float(grid.x[i_x]), float(grid.y[i_y])
+    return default_preset("" if is_own else plan.name)

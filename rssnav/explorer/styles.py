@@ -19,7 +19,7 @@ def _text(name: str) -> str:
 
 
 PAGE = _text("page.html")
-PAGE_CSS = _text("page.css")
+PAGE_CSS, PAGE_JS = _text("page.css"), _text("page.js")
 WIDGETS = [_text("widgets.css")]
 FRAME = ":host, :host > div { height: 100%; width: 100%; }"
 """Style of a pane filled by a frame."""
@@ -91,3 +91,8 @@ def thousands(number: int) -> str:
 def decibels(value: float, unit: str = "dBm") -> str:
     """Format a level with one decimal and a minus sign; "no path" for -inf."""
     return "no path" if np.isneginf(value) else f"{value:.1f} {unit}".replace("-", MINUS)
+
+
+def degrees(value: float) -> str:
+    """Format an angle [deg] with one decimal and a minus sign."""
+    return f"{round(value, 1) + 0.0:.1f}".replace("-", MINUS)

@@ -6,6 +6,7 @@ from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,8 @@ from rssnav.explorer.background import NewestOnly, Ticket
 from rssnav.explorer.fair_turns import TabTurns
 from rssnav.explorer.file_names import shown_name
 from rssnav.explorer.limits import Limits
-from rssnav.explorer.tracing import LatestScene, MapSettings, attempted, end_of_time
+from rssnav.explorer.map_settings import MapSettings
+from rssnav.explorer.tracing import LatestScene, attempted, end_of_time
 from rssnav.explorer.transmitters import without_pattern_files
 from rssnav.measurements.survey import Survey, SurveyError
 from rssnav.measurements.survey_csv import read_survey, transmitters_of
@@ -26,6 +28,20 @@ EXAMPLE = "measured flat"
 """Name of the plan with a survey that comes with the package."""
 
 CSV = ".csv"
+
+
+class SurveyFile(NamedTuple):
+    """A survey as it was read.
+
+    Attributes
+    ----------
+    survey : Survey
+    text : str
+        CSV that it was read from.
+    """
+
+    survey: Survey
+    text: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +82,7 @@ class SurveyTracer:
 
     Attributes
     ----------
-    survey : Survey or None
+    file : SurveyFile or None
         The open survey.
     latest : Residuals or None
         It beside what is traced; None until that is known.
@@ -75,16 +91,21 @@ class SurveyTracer:
     """
 
     def __init__(self, limits: Limits, scenes: LatestScene, turns: TabTurns) -> None:
-        self.survey: Survey | None = None
+        self.file: SurveyFile | None = None
         self.latest: Residuals | None = None
         self.problem = ""
         self._limits = limits
         self._scenes = scenes
         self._thread = NewestOnly("survey", turns)
 
-    def open(self, survey: Survey, plan: FloorPlan, settings: MapSettings) -> None:
+    @property
+    def survey(self) -> Survey | None:
+        """The open survey."""
+        return None if self.file is None else self.file.survey
+
+    def open(self, file: SurveyFile, plan: FloorPlan, settings: MapSettings) -> None:
         """Open another survey, and trace it."""
-        self.survey = survey
+        self.file = file
         self.request(plan, settings)
 
     def request(self, plan: FloorPlan, settings: MapSettings) -> None:
@@ -96,7 +117,7 @@ class SurveyTracer:
     def forget(self) -> None:
         """Close the survey."""
         self._thread.cancel()
-        self.survey, self.latest, self.problem = None, None, ""
+        self.file, self.latest, self.problem = None, None, ""
 
     def close(self) -> None:
         """End the thread."""
@@ -108,8 +129,8 @@ class SurveyTracer:
         traced_with = TraceSettings(
             settings.config(complete=True),
             survey.frequency_hz or settings.frequency_hz,
-            settings.antenna,
-            settings.antenna,
+            settings.transmit_antenna.antenna,
+            settings.receive_antenna.antenna,
             max_memory_bytes=self._limits.trace_bytes,
         )
 
@@ -123,7 +144,7 @@ class SurveyTracer:
         self.latest, self.problem = found, problem
 
 
-def read_survey_upload(name: str, content: bytes, plan: FloorPlan, limits: Limits) -> Survey:
+def read_survey_upload(name: str, content: bytes, plan: FloorPlan, limits: Limits) -> SurveyFile:
     """Read an uploaded survey of a plan with transmitters.
 
     Raises
@@ -146,14 +167,16 @@ def read_survey_upload(name: str, content: bytes, plan: FloorPlan, limits: Limit
     with TemporaryDirectory(prefix="rssnav-") as folder:
         path = Path(folder) / "survey.csv"
         path.write_bytes(content)
-        return _in_users_words(lambda: _read(path, plan), path, origin)
+        survey = _in_users_words(lambda: _read(path, plan), path, origin)
+        return SurveyFile(survey, content.decode("utf-8", "replace"))
 
 
-def example() -> tuple[FloorPlan, Survey]:
+def example() -> tuple[FloorPlan, SurveyFile]:
     """Return the measured flat and its survey."""
     folder = Path(str(files("rssnav.measurements") / "measured_flat"))
     plan = floorplans.load(str(folder / "flat.toml"))
-    return plan, _read(folder / "survey.csv", plan)
+    path = folder / "survey.csv"
+    return plan, SurveyFile(_read(path, plan), path.read_text("utf-8"))
 
 
 def _read(path: Path, plan: FloorPlan) -> Survey:

@@ -4,115 +4,33 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 from threading import Lock
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from floorplans import FloorPlan, PlanError
+from floorplans import FloorPlan
 from floorplans.transmitters import ALL
 from raytrace import (
-    Antenna,
-    Grid,
-    Paths,
-    PathStatistics,
     RadioMap,
     Scene,
-    TraceConfig,
     Transmitter,
     compute_radio_maps,
     trace_paths,
 )
 from rssnav.explorer.background import NewestOnly, Ticket
+from rssnav.explorer.cell_paths import CellPaths, Position
 from rssnav.explorer.fair_turns import TabTurns
 from rssnav.explorer.limits import Limits
-from rssnav.explorer.transmitters import without_file
-from rssnav.maps import CELL_SIZE_M, HEIGHT_M
-from rssnav.presets import PRESETS, PresetName
+from rssnav.explorer.map_settings import MapSettings
 from rssnav.scenes import PlanScene
-from rssnav.transmitters import FREQUENCY_HZ, POWER_DBM, SOURCE, Sending
 
-Position = tuple[float, float, float]
 T = TypeVar("T")
 
 TRACE_ERRORS = (ValueError, TimeoutError, MemoryError)
 """What a trace may raise; errors of plans and scenes are among the first."""
-
-
-@dataclass(frozen=True)
-class MapSettings:
-    """Parameters of a map other than its plan.
-
-    Attributes
-    ----------
-    cell_size_m, height_m : float
-        Side of a cell, and height of the receivers above the floor [m].
-    max_reflections : int
-        Maximum number of reflections on a path.
-    power_dbm, frequency_hz : float
-        Power [dBm] and carrier frequency [Hz] of transmitters that state none.
-    preset : "paper" or "building"
-        Whether waves go through walls, and the antennas.
-    server : str
-        The transmitter: "source", the id of one of the plan's, or "all" for the best in each cell.
-    """
-
-    cell_size_m: float = CELL_SIZE_M
-    height_m: float = HEIGHT_M
-    max_reflections: int = TraceConfig.max_reflections
-    power_dbm: float = POWER_DBM
-    frequency_hz: float = FREQUENCY_HZ
-    preset: PresetName = "paper"
-    server: str = SOURCE
-
-    @property
-    def antenna(self) -> Antenna:
-        """Antenna of receivers, and of transmitters without one of their own."""
-        return PRESETS[self.preset].antenna
-
-    def config(self, *, complete: bool) -> TraceConfig:
-        """Return the limits of a trace, with or without diffraction."""
-        return replace(
-            PRESETS[self.preset].config,
-            max_reflections=self.max_reflections,
-            max_diffractions=int(complete),
-        )
-
-    def check_height(self, plan: FloorPlan) -> None:
-        """Raise `PlanError` if the receivers are not between floor and ceiling."""
-        if not 0.0 < self.height_m < plan.height_m:
-            raise PlanError(
-                f"receivers {self.height_m:g} m above the floor: choose a height above 0 and below "
-                f"{plan.height_m:g} m, the ceiling's",
-                origin=plan.name,
-            )
-
-    def grid(self, plan: FloorPlan) -> Grid:
-        """Cells over a plan; raise `PlanError` if they are not between floor and ceiling."""
-        self.check_height(plan)
-        return Grid.over(plan.bounds, self.cell_size_m, self.height_m)
-
-    def transmitter(self, plan: FloorPlan) -> Transmitter:
-        """Transmitter at the plan's source, or that of the plan which is chosen."""
-        chosen = next((t for t in plan.transmitters if t.id == self.server), None)
-        if chosen is None:
-            position = plan.require_source()
-            return Transmitter(position, self.power_dbm, self.frequency_hz, self.antenna)
-        sending = Sending(default_antenna=self.antenna)
-        power_dbm, frequency_hz = chosen.power_dbm, chosen.frequency_hz
-        return sending.transmitter(
-            replace(
-                without_file(chosen),
-                power_dbm=self.power_dbm if power_dbm is None else power_dbm,
-                frequency_hz=self.frequency_hz if frequency_hz is None else frequency_hz,
-            )
-        )
-
-    def transmitters(self, plan: FloorPlan) -> dict[str, Transmitter]:
-        """All transmitters of a plan by name."""
-        return {t.id: replace(self, server=t.id).transmitter(plan) for t in plan.transmitters}
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,41 +57,6 @@ class TracedMap:
     complete: bool
     servers: tuple[str, ...] = ()
     best_server: NDArray[np.int64] | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class CellPaths:
-    """Every path to the centre of a cell.
-
-    Attributes
-    ----------
-    plan : FloorPlan
-    settings : MapSettings
-    receiver : (float, float, float)
-        Centre of the cell [m].
-    paths : Paths
-        Strongest first.
-    """
-
-    plan: FloorPlan
-    settings: MapSettings
-    receiver: Position
-    paths: Paths
-
-    @property
-    def power_dbm(self) -> NDArray[np.float64]:
-        """(n,) power of each path [dBm]."""
-        return self.sent_dbm + self.paths.gain_db
-
-    @property
-    def sent_dbm(self) -> float:
-        """Power of the transmitter [dBm]."""
-        return self.settings.transmitter(self.plan).power_dbm
-
-    @cached_property
-    def statistics(self) -> PathStatistics:
-        """Statistics of the paths at the receiver."""
-        return PathStatistics.of(self.paths, self.sent_dbm, 1)
 
 
 class MapCache:
@@ -324,7 +207,7 @@ class MapTracer:
             settings.transmitters(plan) if several else {settings.server: sending},
             settings.grid(plan),
             settings.config(complete=complete),
-            receive_antenna=settings.antenna,
+            receive_antenna=settings.receive_antenna.antenna,
             progress=partial(self._show_progress, complete),
             stop=end_of_time(ticket, self._limits.map_s),
             max_memory_bytes=self._limits.trace_bytes,
@@ -386,7 +269,7 @@ class PathFinder:
                 settings.transmitter(plan),
                 np.array([receiver]),
                 settings.config(complete=True),
-                receive_antenna=settings.antenna,
+                receive_antenna=settings.receive_antenna.antenna,
                 stop=end_of_time(ticket, self._limits.map_s),
                 max_memory_bytes=self._limits.trace_bytes,
             )

@@ -12,6 +12,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from raytrace import RadioMap
 from rssnav.agents import Agent, LocationAgent, RssAgent
 from rssnav.decision_process import DecisionProcess
 from rssnav.discrete_states import ExactStates, ToleranceStates
@@ -239,3 +240,10 @@ def _latest_flight(learner: Learner, process: DecisionProcess, world: GridWorld)
     steps, _, truncated = learner.run.episodes[episode - 1]
     cells = process.cell_of_state[np.concatenate(([process.start], learner.trace[:steps]))]
     return Flight(episode, world.position[cells], not truncated)
+
+
+def suggested_goal_dbm(radio_map: RadioMap, usual_dbm: float) -> float:
+    """Goal level [dBm] for a map: the usual one, or one that its strongest cells exceed."""
+    covered = radio_map.rss_dbm[np.isfinite(radio_map.rss_dbm)]
+    strongest = float(covered.max()) if covered.size else usual_dbm
+    return usual_dbm if strongest > usual_dbm else float(np.floor(strongest - 1.0))

@@ -11,14 +11,14 @@ from bokeh.plotting import figure
 from numpy.typing import NDArray
 
 from rssnav.agents import RssAgent
-from rssnav.explorer.inputs import checked_values, number_input
-from rssnav.explorer.map_figure import FONT
-from rssnav.explorer.ranges import Range
-from rssnav.explorer.session import Session, suggested_goal_dbm
+from rssnav.explorer.inputs import MARGIN, WIDE, checked_values, flow, number_input
+from rssnav.explorer.map_drawing import style_axes
+from rssnav.explorer.session import Session
+from rssnav.explorer.setting_ranges import LEARNING, TRAINING
 from rssnav.explorer.styles import WIDGETS, pairs, problem
-from rssnav.explorer.training import MAX_EPISODES, LiveTraining, TrainingSettings
+from rssnav.explorer.training import LiveTraining, TrainingSettings, suggested_goal_dbm
 from rssnav.learning_parameters import QLearning
-from rssnav.pictures.style import AGENT_COLOURS, FAINT, INK
+from rssnav.pictures.style import AGENT_COLOURS, FAINT
 
 MOST_POINTS = 2000
 SMOOTHED = 25
@@ -26,22 +26,6 @@ SMOOTHED = 25
 
 PACES = {"no limit": math.inf, "50": 50.0, "5": 5.0}
 AGENTS = {"RSS": "rss", "Location": "location"}
-RANGES = {
-    "speed": Range("Speed [cells per step]", 1, 8, whole=True),
-    "episodes": Range("Episodes", 1, MAX_EPISODES, 100, whole=True),
-    "goal_rss_dbm": Range("Goal: RSS above [dBm]", -1000.0, 1000.0),
-    "goal_distance_m": Range("Goal: within [m]", 0.1, 1000.0, 0.5),
-    "tolerance_db": Range("Tolerance of states [dB]", 0.0, 1000.0, 0.5),
-    "seed": Range("Seed", 0, 2**53 - 1, whole=True),
-}
-LEARNING_RANGES = {
-    "gamma": Range("Discount \u03b3", 0.0, 1.0, 0.01),
-    "eta": Range("Decay \u03b7 per step", 0.0, 1.0, 1e-5),
-    "alpha_max": Range("Initial learning rate \u03b1", QLearning.alpha_min, 1.0, 0.05),
-    "epsilon_max": Range("Initial exploration \u03b5", QLearning.epsilon_min, 1.0, 0.05),
-    "initial_q": Range("Initial Q", -1e9, 1e9, 10.0),
-    "goal_reward": Range("Goal reward", -1e9, 1e9, 100.0),
-}
 
 
 class TrainingPanel:
@@ -66,9 +50,9 @@ class TrainingPanel:
         self._facts = pn.pane.HTML("", stylesheets=WIDGETS, sizing_mode="stretch_width")
         self.view = pn.Column(
             pn.Row(self._agent, margin=0),
-            pn.FlexBox(*self._inputs.values(), self._pace, gap="0px 8px"),
+            flow(*self._inputs.values(), self._pace),
             pn.Card(
-                pn.FlexBox(*self._learning.values(), gap="0px 8px"),
+                flow(*self._learning.values()),
                 header=pn.pane.HTML("Parameters of Q-learning", stylesheets=WIDGETS),
                 collapsed=True,
                 stylesheets=WIDGETS,
@@ -88,6 +72,14 @@ class TrainingPanel:
         if traced is not None:
             goal = suggested_goal_dbm(traced.radio_map, RssAgent.terminal_dbm)
             self._inputs["goal_rss_dbm"].value = goal
+
+    def adopt(self, settings: TrainingSettings) -> None:
+        """Show the parameters of a training, which a saved session may have brought."""
+        self._agent.value = settings.agent
+        for name, widget in self._inputs.items():
+            widget.value = getattr(settings, name)
+        for name, widget in self._learning.items():
+            widget.value = getattr(settings.learning, name)
 
     def show(self) -> None:
         """Show the progress of the session's training."""
@@ -111,16 +103,16 @@ class TrainingPanel:
         usual = TrainingSettings()
         self._inputs = {
             name: number_input(allowed, value=getattr(usual, name))
-            for name, allowed in RANGES.items()
+            for name, allowed in TRAINING.items()
         }
         self._inputs["goal_distance_m"].visible = False
         self._pace = pn.widgets.Select(
             label="Episodes per second", options=PACES, value=math.inf, stylesheets=WIDGETS,
-            width=152, margin=(3, 5),
+            width=WIDE, margin=MARGIN,
         )  # fmt: skip
         self._learning = {
             name: number_input(allowed, value=getattr(usual.learning, name))
-            for name, allowed in LEARNING_RANGES.items()
+            for name, allowed in LEARNING.items()
         }
         self._agent.param.watch(self._choose_agent, "value")
 
@@ -137,7 +129,7 @@ class TrainingPanel:
         try:
             values, learning = (
                 checked_values(*panel)
-                for panel in ((self._inputs, RANGES), (self._learning, LEARNING_RANGES))
+                for panel in ((self._inputs, TRAINING), (self._learning, LEARNING))
             )
             settings = TrainingSettings(
                 self._agent.value, learning=QLearning(**learning), pace=self._pace.value, **values
@@ -174,10 +166,8 @@ class LearningCurve:
         )
         self.model.grid.grid_line_color = "#eeeae1"
         for axis in (*self.model.xaxis, *self.model.yaxis):
-            axis.update(
-                axis_line_color=None, axis_label_text_font=FONT, major_label_text_font=FONT,
-                axis_label_text_font_style="normal", axis_label_text_color=INK,
-            )  # fmt: skip
+            axis.update(axis_line_color=None)
+        style_axes(self.model)
         self._points = ColumnDataSource({"x": [], "y": []})
         self._mean = ColumnDataSource({"x": [], "y": []})
         self._dots = self.model.scatter("x", "y", source=self._points, size=3, alpha=0.25)

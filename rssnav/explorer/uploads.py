@@ -1,4 +1,4 @@
-"""Floor plans from uploaded files.
+"""Floor plans and sessions from uploaded files.
 
 An upload is read alone in an empty folder, by a separate process with limited time and memory,
 because even a short TOML file can be made to take hours. References in it are not followed.
@@ -18,10 +18,12 @@ from typing import NamedTuple
 import floorplans
 from floorplans import FloorPlan, PlanError
 from rssnav.explorer.file_names import file_name, shown_name
-from rssnav.explorer.import_worker import ENTITY_MARKS, REPORT, RESULT, TOML
+from rssnav.explorer.import_worker import ENTITY_MARKS, REPORT, RESULT, SAVED, SESSION, TOML
 from rssnav.explorer.limits import Limits
+from rssnav.explorer.session_file import SavedSession
+from rssnav.explorer.survey_layer import SurveyFile, read_survey_upload
 
-ACCEPTED = (TOML, *ENTITY_MARKS)
+ACCEPTED = (TOML, *ENTITY_MARKS, SESSION)
 
 _REASON_LENGTH = 500
 _MOST_LINES = 200
@@ -36,10 +38,16 @@ class Upload(NamedTuple):
     plan : FloorPlan
     report : tuple of str
         How the file was imported, a line each; empty for a plan in TOML.
+    saved : SavedSession or None
+        What a session's file holds beside the plan.
+    survey : SurveyFile or None
+        The survey in it.
     """
 
     plan: FloorPlan
     report: tuple[str, ...]
+    saved: SavedSession | None = None
+    survey: SurveyFile | None = None
 
 
 def _never() -> None:
@@ -78,7 +86,8 @@ def read_upload(
     suffix = PurePosixPath(origin).suffix.lower()
     if suffix not in ACCEPTED:
         raise PlanError(
-            f"expected a plan in a file that ends in {', '.join(ACCEPTED)}", origin=origin
+            f"expected a plan or a session in a file that ends in {', '.join(ACCEPTED)}",
+            origin=origin,
         )
     with TemporaryDirectory(prefix="rssnav-") as folder:
         file = Path(folder) / file_name(PurePosixPath(origin).stem, suffix)
@@ -89,7 +98,14 @@ def read_upload(
         plan = floorplans.loads(file.with_name(RESULT).read_text("utf-8"), origin=origin)
         if plan.name == file.stem:
             plan = replace(plan, name=PurePosixPath(origin).stem)
-        return Upload(plan, _report(file.with_name(REPORT)))
+        upload = Upload(plan, _report(file.with_name(REPORT)))
+        if suffix != SESSION:
+            return upload
+        saved = SavedSession.loads(file.with_name(SAVED).read_text("utf-8"))
+    survey = None
+    if saved.survey is not None:
+        survey = read_survey_upload(origin, saved.survey.encode(), plan, limits)
+    return upload._replace(saved=saved, survey=survey)
 
 
 def _report(file: Path) -> tuple[str, ...]:

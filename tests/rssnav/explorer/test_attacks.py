@@ -63,10 +63,16 @@ def test_pages_without_a_browser_trace_nothing_and_are_forgotten(server) -> None
         ("Reflections", 20, "0 to 8"),
         ("Reflections", -1, "0 to 8"),
         ("Reflections", HUGE, "0 to 8"),
-        ("Cell [m]", 1e-9, "0.05 to 1000"),
-        ("Cell [m]", 0.05, "cells of at least"),
-        ("UAV's height [m]", -1.0, "0.01 to 1000"),
-        ("UAV's height [m]", 2.6, "below 2.6 m"),
+        ("Cell size [m]", 1e-9, "0.05 to 1000"),
+        ("Cell size [m]", 0.05, "cells of at least"),
+        ("Receiver height [m]", -1.0, "0.01 to 1000"),
+        ("Receiver height [m]", 2.6, "below 2.6 m"),
+        ("Source x [m]", 1e300, "-1e+06 to 1e+06"),
+        ("Source y [m]", 8000.0, "outside the outline"),
+        ("Source z [m]", HUGE, "0.01 to 1000"),
+        ("Start x [m]", INFINITE, "-1e+06 to 1e+06"),
+        ("Transmit azimuth [\u00b0]", 1e9, "-180 to 360"),
+        ("Receive elevation [\u00b0]", -91.0, "-90 to 90"),
         ("Power [dBm]", INFINITE, "-50 to 60"),
         ("Frequency [GHz]", 1e308, "1 to 100"),
     ],
@@ -81,7 +87,7 @@ def test_numbers_out_of_range_are_refused(tab, label, value, says) -> None:
 
 def test_values_of_other_types_change_nothing(tab) -> None:
     empty_map = {"type": "map", "entries": []}
-    for label in ("Reflections", "Cell [m]", "Power [dBm]"):
+    for label in ("Reflections", "Cell size [m]", "Power [dBm]"):
         before = tab.models[tab.input(label)]["value"]
         for value in ("8", True, [1], empty_map, "x" * 50_000, NOT_A_NUMBER):
             tab.change(tab.input(label), "value", value)
@@ -100,7 +106,7 @@ def test_a_widget_with_changed_limits_is_refused_all_the_same(tab) -> None:
 
 def test_unknown_options_of_a_select_change_nothing(tab) -> None:
     for value in ("no such plan", "/etc/passwd", "../flat", 7, None, ["flat"]):
-        tab.change(tab.input("Plan"), "value", value)
+        tab.change(tab.input("Floor plan"), "value", value)
     tab.still_works()
 
 
@@ -209,9 +215,9 @@ def test_a_slow_browser_finds_its_page(server, make) -> None:
 
 def test_work_ends_with_its_tab(server, make) -> None:
     attacker = make().open().wait_for_map()
-    attacker.change(attacker.input("Plan"), "value", "scenario2")
+    attacker.change(attacker.input("Floor plan"), "value", "scenario2")
     attacker.change(attacker.input("Reflections"), "value", 8)
-    attacker.change(attacker.input("Cell [m]"), "value", 0.5)
+    attacker.change(attacker.input("Cell size [m]"), "value", 0.5)
     attacker.receive(1.0)
     attacker.close()
     time.sleep(5.0)
@@ -223,7 +229,7 @@ def test_work_ends_with_its_tab(server, make) -> None:
 def test_a_tab_gets_its_turn_beside_greedy_ones(make) -> None:
     for _ in range(3):
         greedy = make().open()
-        greedy.change(greedy.input("Plan"), "value", "scenario2")
+        greedy.change(greedy.input("Floor plan"), "value", "scenario2")
     make().open().wait_for_map()
 
 

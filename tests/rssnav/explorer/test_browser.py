@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import http.client
 import re
-import shutil
 import socket
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,107 +13,14 @@ import pytest
 
 import floorplans
 
-playwright = pytest.importorskip("playwright.sync_api")
+pytest.importorskip("playwright")
 pytest.importorskip("panel")
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("chrome")
-FLAGS = (
-    "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
-    "--disable-background-networking --disable-component-update --disable-sync"
-)
-PATIENCE_MS = 30_000
-COMPLETE = re.compile(r"cells, .* paths, traced in [\d.]+ s$")
+from explorer_browser import NEEDS_BROWSER, PHONE, Tab
+from playwright.sync_api import expect
+
 SOURCE = (1.2, 7.9)
-DESKTOP, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
-
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here")
-
-MAP_VIEW = """
-    const views = [...Bokeh.index.roots];
-    for (const view of views) views.push(...(view.child_views ?? []));
-    const map = views.find(
-      (view) => view.model.type == "Figure" && view.model.renderers.length > 5);
-"""
-PLACE = f"""([x, y]) => {{ {MAP_VIEW}
-    const box = map.canvas_view.el.getBoundingClientRect();
-    return [box.left + map.frame.x_scale.compute(x), box.top + map.frame.y_scale.compute(y)];
-}}"""
-COLUMNS = f"""(glyph) => {{ {MAP_VIEW}
-    const all = map.model.renderers.filter((renderer) => renderer.glyph.type == glyph);
-    return all.map((renderer) => [...renderer.data_source.data.x ?? []]);
-}}"""
-
-
-@pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    """A server on any free port, in a process of its own."""
-    command = [sys.executable, "-m", "rssnav", "explore", "flat", "--port", "0", "--no-browser"]
-    server = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    try:
-        line = server.stderr.readline()
-        yield re.search(r"http://\S+", line).group()
-    finally:
-        server.terminate()
-        remarks = server.communicate(timeout=20)[1]
-    assert "Traceback" not in remarks, remarks
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with playwright.sync_playwright() as library:
-        opened = library.chromium.launch(executable_path=CHROMIUM, args=FLAGS.split())
-        yield opened
-        opened.close()
-
-
-class Tab:
-    """A page of the explorer, and what a person does on it."""
-
-    def __init__(self, browser, address: str, viewport=DESKTOP) -> None:
-        self.context = browser.new_context(viewport=viewport, accept_downloads=True)
-        self.page = self.context.new_page()
-        self.page.set_default_timeout(PATIENCE_MS)
-        self.requests, self.errors = [], []
-        self.page.on("request", lambda request: self.requests.append(request.url))
-        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        for _ in range(20):
-            try:
-                self.page.goto(address)
-                break
-            except playwright.Error:
-                self.page.wait_for_timeout(250)  # the address is told just before it is open
-        self.wait_for_map()
-
-    def wait_for_map(self) -> None:
-        self.page.get_by_text(COMPLETE).wait_for()
-
-    def place(self, x: float, y: float) -> list[float]:
-        """Where a point of the plan [m] is in the window."""
-        return self.page.evaluate(PLACE, [x, y])
-
-    def columns(self, glyph: str) -> list[list[float]]:
-        """The x of everything that a kind of glyph draws on the map."""
-        return self.page.evaluate(COLUMNS, glyph)
-
-    def marks(self) -> list[float]:
-        """The x of source and start [m]."""
-        return self.columns("Scatter")[-1]
-
-    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
-        (x, y), (to_x, to_y) = self.place(*start), self.place(*end)
-        self.page.mouse.move(x, y)
-        self.page.mouse.down()
-        for share in (0.1, 0.4, 0.7, 1.0):
-            self.page.mouse.move(x + share * (to_x - x), y + share * (to_y - y))
-            self.page.wait_for_timeout(60)
-        self.page.mouse.up()
-
-    def choose(self, name: str) -> None:
-        """Turn to a tab of the tools."""
-        self.page.locator(".bk-tab").get_by_text(name, exact=True).click()
-
-    def wait_until(self, expression: str) -> None:
-        self.page.wait_for_function(expression)
+pytestmark = NEEDS_BROWSER
 
 
 @pytest.fixture(scope="module")
@@ -162,7 +66,7 @@ def test_click_a_cell_for_its_paths(tab, tmp_path) -> None:
     tab.page.mouse.click(*tab.place(9.5, 6.5))
     tab.page.get_by_text("(9.5, 6.5, 2) m").wait_for()
     assert tab.page.get_by_role("row").count() == 13
-    space, plan = (tab.page.get_by_role("button", name=name, exact=True) for name in ("3D", "Plan"))
+    space, plan = (tab.page.get_by_role("button", name=name, exact=True) for name in ("3D", "2D"))
     space.click()
     frame = tab.page.frame_locator("iframe[title='3D']")
     frame.get_by_text("flat: paths to (9.5, 6.5, 2) m").wait_for()
@@ -181,18 +85,18 @@ def test_train_watch_stop_and_play(tab) -> None:
     tab.page.get_by_text(re.compile(r"^[1-9]\d* of 1000$")).wait_for()
     stop.click()
     tab.page.get_by_text(re.compile(r"^Episode \d+ of 1000: step")).wait_for()
-    playwright.expect(train).to_be_enabled()
-    before = tab.columns("Scatter")
+    expect(train).to_be_enabled()
+    before = tab.columns("Line")
     tab.page.locator("button.first").click()
     tab.page.get_by_text(re.compile(r"^Episode 1 of 1000: step 0 of")).wait_for()
     tab.page.locator("button.play").click()
     tab.page.get_by_text(re.compile(r"^Episode 2 of 1000")).wait_for()
-    assert tab.columns("Scatter") != before
+    assert tab.columns("Line") != before
     tab.page.locator("button.pause").click()
 
 
 def test_download_map_figures_and_plan(tab, tmp_path) -> None:
-    tab.choose("Download")
+    tab.choose("Files")
     for label, name in (
         ("Map (HDF5)", "flat.h5"),
         ("Figure (PNG)", "flat.png"),
@@ -212,7 +116,7 @@ def test_download_map_figures_and_plan(tab, tmp_path) -> None:
 
 def test_upload_a_plan_and_choose_another(tab, tmp_path) -> None:
     text = floorplans.dumps(floorplans.load("flat"))
-    tab.choose("Plan")
+    tab.choose("Setup")
     for name, content, says in (
         ("bad.toml", "name = ", "bad.toml: not valid TOML"),
         ("mine.toml", text.replace('"flat"', '"my flat"'), "my flat"),
@@ -221,12 +125,12 @@ def test_upload_a_plan_and_choose_another(tab, tmp_path) -> None:
         tab.page.locator("input[type=file]").set_input_files(tmp_path / name)
         tab.page.locator(".bar, .status").get_by_text(says).first.wait_for()
     tab.wait_for_map()
-    tab.page.get_by_label("Cell [m]").fill("2")
-    tab.page.get_by_label("Cell [m]").press("Enter")
+    tab.page.get_by_label("Cell size [m]").fill("2")
+    tab.page.get_by_label("Cell size [m]").press("Enter")
     tab.page.get_by_text(re.compile("^24 cells")).wait_for()
-    tab.page.get_by_label("Cell [m]").fill("1")
-    tab.page.get_by_label("Cell [m]").press("Enter")
-    tab.page.get_by_label("Plan", exact=True).select_option("flat")
+    tab.page.get_by_label("Cell size [m]").fill("1")
+    tab.page.get_by_label("Cell size [m]").press("Enter")
+    tab.page.get_by_label("Floor plan", exact=True).select_option("flat")
     tab.page.locator(".bar b").get_by_text("flat", exact=True).wait_for()
     tab.wait_for_map()
 

@@ -27,19 +27,28 @@ from floorplans.geojson_plan import dumps_geojson
 from floorplans.transmitters import ALL
 from raytrace import Paths, RadioMap, TraceConfig
 from rssnav.explorer.background import FileMaker, NewestOnly, SupersededError, TooManyError
-from rssnav.explorer.cell_panel import _summary, page_3d, strongest
+from rssnav.explorer.cell_panel import _summary
+from rssnav.explorer.cell_paths import CellPaths, path_colours, strongest
 from rssnav.explorer.downloads import figure_file, map_file, plan_file
 from rssnav.explorer.fair_turns import FairTurns, TabTurns
 from rssnav.explorer.file_names import file_name
 from rssnav.explorer.flight_player import FRAMES, FlightPlayer, first_frames, flight_at
 from rssnav.explorer.limits import Limits
-from rssnav.explorer.map_figure import MapFigure, path_colours
+from rssnav.explorer.map_figure import MapFigure
+from rssnav.explorer.map_settings import MapSettings
 from rssnav.explorer.page import Changes, Page
 from rssnav.explorer.server import host_names, with_port
-from rssnav.explorer.session import Session, suggested_goal_dbm
+from rssnav.explorer.session import Session
+from rssnav.explorer.space_view import page_3d
 from rssnav.explorer.styles import survey_words
-from rssnav.explorer.tracing import CellPaths, MapCache, MapSettings
-from rssnav.explorer.training import Flight, LiveTraining, TrainingSettings, kept_episodes
+from rssnav.explorer.tracing import MapCache
+from rssnav.explorer.training import (
+    Flight,
+    LiveTraining,
+    TrainingSettings,
+    kept_episodes,
+    suggested_goal_dbm,
+)
 from rssnav.explorer.training_panel import running_mean
 from rssnav.explorer.uploads import read_upload
 from rssnav.maps import make_map
@@ -507,7 +516,7 @@ def test_goal_suits_the_map(session) -> None:
 def test_what_a_map_carries_shows_under_the_pointer(session) -> None:
     with_spread = session.complete_map.radio_map
     without = replace(with_spread, delay_spread_s=None)
-    shown = MapFigure(FLAT, 2.0, on_move=print, on_drag=print, on_tap=print)
+    shown = MapFigure(FLAT, 2.0, on_move=print, on_drag=print, on_tap=print, on_step=print)
     hover = next(tool for tool in shown.model.select(HoverTool) if not tool.tooltips)
     for drawn, names in (
         (without, ["RSS", "paths", "at"]),
@@ -525,7 +534,7 @@ def test_the_tooltip_tells_outside_from_without_a_path() -> None:
     )
     radio_map = make_map(plan, cell_size_m=1.0, config=TraceConfig(max_reflections=0))
     dark = np.where(radio_map.grid.x < 1, -np.inf, radio_map.rss_dbm)
-    shown = MapFigure(plan, 2.0, on_move=print, on_drag=print, on_tap=print)
+    shown = MapFigure(plan, 2.0, on_move=print, on_drag=print, on_tap=print, on_step=print)
     shown.show_map(replace(radio_map, rss_dbm=dark))
     (picture,) = (r for r in shown.model.renderers if isinstance(r.glyph, Image))
     values = picture.data_source.data["rss"][0]
@@ -540,7 +549,12 @@ def test_the_tooltip_tells_outside_from_without_a_path() -> None:
 def test_a_mark_tells_where_it_was_dropped_and_comes_back_when_deleted() -> None:
     told = []
     shown = MapFigure(
-        FLAT, 2.0, on_move=lambda *place: told.append(place), on_drag=print, on_tap=print
+        FLAT,
+        2.0,
+        on_move=lambda *place: told.append(place),
+        on_drag=print,
+        on_tap=print,
+        on_step=print,
     )
     marks = shown.model.renderers[-1].data_source
     marks.data = {**marks.data, "x": [3.0, FLAT.start[0]]}
@@ -624,7 +638,7 @@ READINGS = "tx,x,y,z,rss_dbm\n" + "".join(
 @pytest.fixture
 def with_transmitters() -> Iterator[Session]:
     session = Session(TWO_ROOMS, cache=CACHE)
-    session.change_settings(replace(COARSE, preset="building"))
+    session.change_settings(replace(COARSE.with_preset("building"), max_reflections=2))
     wait_for_map(session)
     yield session
     session.close()
@@ -643,10 +657,12 @@ def test_a_transmitter_of_the_plan_is_mapped_as_the_command_does(with_transmitte
     session.choose_server("east")
     wait_for_map(session)
     traced = session.complete_map.radio_map
-    sent = Sending(default_antenna=session.settings.antenna).transmitter(TWO_ROOMS.transmitters[0])
+    sent = Sending(default_antenna=session.settings.receive_antenna.antenna).transmitter(
+        TWO_ROOMS.transmitters[0]
+    )
     made = make_map(
         TWO_ROOMS, transmitter=sent, cell_size_m=1.5, config=TraceConfig(2, 1, 3),
-        receive_antenna=session.settings.antenna,
+        receive_antenna=session.settings.receive_antenna.antenna,
     )  # fmt: skip
     np.testing.assert_array_equal(traced.rss_dbm, made.rss_dbm)
     assert session.plan.source == TWO_ROOMS.transmitters[0].position
@@ -692,7 +708,7 @@ def test_a_survey_is_compared_with_what_is_traced(with_transmitters) -> None:
     assert found.residual_db.mean() == pytest.approx(0.0, abs=1e-9)
     assert found.sigma_db == pytest.approx(found.residual_db.std())
     assert "10 readings" in survey_words(found)
-    shown = MapFigure(FLAT, 1.2, on_move=print, on_drag=print, on_tap=print)
+    shown = MapFigure(FLAT, 1.2, on_move=print, on_drag=print, on_tap=print, on_step=print)
     (readings,) = [r for r in shown.model.renderers if "residual" in r.data_source.column_names]
     for server, names in ((SOURCE, {"east", "west"}), ("east", {"east"})):
         shown.show_survey(found, server)
@@ -731,10 +747,13 @@ def test_an_uploaded_plan_reads_no_pattern_of_the_server(tmp_path) -> None:
     secret.write_text("secret")
     transmitter = PlanTransmitter("x", (9.6, 1.4, 1.5), antenna=str(secret))
     session = Session(replace(FLAT, name="own", transmitters=(transmitter,)), cache=CACHE)
-    session.change_settings(replace(COARSE, preset="building"))
+    session.change_settings(replace(COARSE.with_preset("building"), max_reflections=2))
     session.choose_server("x")
     wait_for_map(session)
-    assert session.complete_map.radio_map.transmitter.antenna == session.settings.antenna
+    assert (
+        session.complete_map.radio_map.transmitter.antenna
+        == session.settings.receive_antenna.antenna
+    )
     session.close()
 
 

@@ -1,0 +1,34 @@
+// Keys: on the map, arrows and Enter go to the data named "keys", which the server follows.
+const STEPS = {
+  ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], Enter: [0, 0],
+};
+const SKIPPED = ".bk-spin-btn, .bk-layer.bk-events, .filepond--browser";
+let presses = 0;
+
+document.querySelector(".view").addEventListener("keydown", (event) => {
+  const step = STEPS[event.key];
+  if (!step || event.target !== event.currentTarget || event.ctrlKey || event.altKey) return;
+  const [keys] = Bokeh.documents.map((page) => page.get_model_by_name("keys")).filter(Boolean);
+  if (!keys) return;
+  event.preventDefault();
+  presses += 1;
+  keys.data = { right: [step[0]], up: [step[1]], count: [presses] };
+});
+
+// The library puts tabs behind their content, and makes a stop of each arrow of a number.
+const tidy = (root) => {
+  for (const node of root.querySelectorAll("*")) {
+    if (node.matches(SKIPPED)) node.tabIndex = -1;
+    if (node.title && node.tabIndex === 0) node.ariaLabel ??= node.title;
+    if (node.matches(".bk-header") && root.firstElementChild !== node) root.prepend(node);
+    if (node.shadowRoot) tidy(node.shadowRoot);
+  }
+};
+document.addEventListener("keydown", (event) => {
+  if (event.key === "Tab") tidy(document);
+  const [focused] = event.composedPath();
+  if ([" ", "Enter"].includes(event.key) && focused.matches?.(".bk-tab")) {
+    event.preventDefault();
+    focused.click();
+  }
+}, true);
