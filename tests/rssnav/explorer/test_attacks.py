@@ -69,7 +69,7 @@ def test_pages_without_a_browser_trace_nothing_and_are_forgotten(server) -> None
         ("Receiver height [m]", 2.6, "below 2.6 m"),
         ("Source x [m]", 1e300, "-1e+06 to 1e+06"),
         ("Source y [m]", 8000.0, "outside the outline"),
-        ("Source z [m]", HUGE, "0.01 to 1000"),
+        ("Source z [m]", -1e300, "0.01 to 1000"),
         ("Start x [m]", INFINITE, "-1e+06 to 1e+06"),
         ("Transmit azimuth [\u00b0]", 1e9, "-180 to 360"),
         ("Receive elevation [\u00b0]", -91.0, "-90 to 90"),
