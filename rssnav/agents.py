@@ -10,26 +10,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Literal, Protocol
 
 from rssnav.arguments import require
-from rssnav.decision_process import DecisionProcess
+from rssnav.decision_process import DecisionProcess, process_of
 from rssnav.discrete_states import (
     AGENT_SENSITIVITY_DBM,
     ExactStates,
     Fluctuation,
-    GoalRule,
-    ReadingStates,
     StateRule,
     check_sensitivity,
-    heard,
-    reading_states,
 )
 from rssnav.learning_parameters import QLearning
-from rssnav.world import GOAL_DISTANCE_M, GridWorld, WorldError
+from rssnav.missions.observation import Observation
+from rssnav.missions.task import GOAL_DISTANCE_M, ReadingAbove, Task, Within
+from rssnav.world import GridWorld
 
 
 class Agent(Protocol):
@@ -77,11 +72,7 @@ class RssAgent:
 
     def __post_init__(self) -> None:
         check_sensitivity(self.sensitivity_dbm, self.terminal_dbm)
-        if self.fluctuation.sigma_db > 0.0 and isinstance(self.states, ExactStates):
-            raise ValueError(
-                f"states: with readings that fluctuate (sigma_db = {self.fluctuation.sigma_db:g}) "
-                "every reading would be a new exact state; use ToleranceStates or IntervalStates"
-            )
+        self.observation()
 
     @property
     def name(self) -> str:
@@ -96,23 +87,16 @@ class RssAgent:
         WorldError
             When no reachable cell exceeds ``terminal_dbm``, or the start does.
         """
-        heard_dbm = heard(world.rss_dbm, self.sensitivity_dbm)
-        terminal = world.rss_dbm > self.terminal_dbm
-        _check_terminal(world, terminal, f"RSS > {self.terminal_dbm:g} dBm")
-        difference = heard_dbm[world.next_state] - heard_dbm[:, None]
-        return _process(
-            world, learning, difference, terminal, self._reading_states(world, learning)
-        )
+        return process_of(world, self.task(learning), self.observation())
 
-    def _reading_states(self, world: GridWorld, learning: QLearning) -> ReadingStates | None:
-        """How readings become discrete states; None where each cell is a discrete state."""
-        heard_dbm = heard(world.rss_dbm, self.sensitivity_dbm)
-        if isinstance(self.states, ExactStates) and np.unique(heard_dbm).size == world.n_states:
-            return None
-        replaces = learning.goal_reward_is == "instead"
-        goal = GoalRule(self.terminal_dbm, learning.goal_reward, replaces)
-        return reading_states(
-            self.states, self.fluctuation, world.rss_dbm, goal, self.sensitivity_dbm
+    def task(self, learning: QLearning) -> Task:
+        """What a step is worth to this agent, and when an episode ends."""
+        return _task(learning, ReadingAbove(self.terminal_dbm), "rss")
+
+    def observation(self) -> Observation:
+        """What this agent sees."""
+        return Observation(
+            self.states, fluctuation=self.fluctuation, sensitivity_dbm=self.sensitivity_dbm
         )
 
 
@@ -149,40 +133,25 @@ class LocationAgent:
             When no reachable cell is near enough to the transmitter, the start is, or the
             transmitter is at a cell's centre (1 / D would be infinite).
         """
-        if not np.all(world.distance_m > 0.0):
-            raise WorldError(
-                f"plan {world.plan_name!r}: the source {world.source} lies exactly at a cell "
-                "centre, where the reward 1/D is infinite; move the source or the grid"
-            )
-        terminal = world.distance_m < self.terminal_distance_m
-        _check_terminal(world, terminal, f"D < {self.terminal_distance_m:g} m")
-        closeness = 1.0 / world.distance_m[world.next_state]
-        return _process(world, learning, closeness, terminal)
+        return process_of(world, self.task(learning), self.observation())
+
+    def task(self, learning: QLearning) -> Task:
+        """What a step is worth to this agent, and when an episode ends."""
+        return _task(learning, Within(self.terminal_distance_m), "closeness")
+
+    def observation(self) -> Observation:
+        """What this agent sees."""
+        return Observation(reading=None, cell=True)
 
 
-def _process(
-    world: GridWorld,
-    learning: QLearning,
-    step_reward: NDArray[np.float64],
-    terminal: NDArray[np.bool_],
-    readings: ReadingStates | None = None,
-) -> DecisionProcess:
-    """Add the goal reward to the step rewards (S, 8) and clear the impossible steps."""
-    possible = world.action_mask
-    arrives = possible & terminal[world.next_state]
-    kept = 0.0 if learning.goal_reward_is == "instead" else step_reward
-    reward = np.where(arrives, kept + learning.goal_reward, np.where(possible, step_reward, 0.0))
-    return DecisionProcess(world.next_state, reward, terminal, world.start_state, readings=readings)
-
-
-def _check_terminal(world: GridWorld, terminal: NDArray[np.bool_], condition: str) -> None:
-    if not terminal.any():
-        raise WorldError(
-            f"plan {world.plan_name!r}: no cell with {condition} can be reached at speed "
-            f"{world.speed}; another speed, start or threshold is needed"
-        )
-    if terminal[world.start_state]:
-        raise WorldError(
-            f"plan {world.plan_name!r}: the start already has {condition}, so every episode would "
-            "end before its first step; move the start or tighten the threshold"
-        )
+def _task(
+    learning: QLearning, goal: ReadingAbove | Within, reward: Literal["rss", "closeness"]
+) -> Task:
+    """Task of a goal and a reward, with the goal reward and step limit of Algorithm 1."""
+    return Task(
+        goal,
+        reward,
+        goal_reward=learning.goal_reward,
+        goal_reward_is=learning.goal_reward_is,
+        max_steps=learning.max_steps,
+    )

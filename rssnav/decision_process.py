@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rssnav.discrete_states import ExactStates, heard
+from rssnav.missions.observation import Observation
+from rssnav.missions.tables import SensorTables, sensor_tables
+from rssnav.missions.task import ReadingAbove, Task, Within
 from rssnav.world import ACTION_NAMES, GridWorld, WorldError
-
-if TYPE_CHECKING:
-    from rssnav.discrete_states import ReadingStates
 
 
 def _no_table() -> NDArray[np.int32]:
@@ -41,7 +41,7 @@ class DecisionProcess:
     cell_of_state : (S,) int32
         Cell of each state: the row of the world's arrays. Action ``a`` must lead from cell ``c``
         to cell ``world.next_state[c, a]``. Left out, state ``k`` is cell ``k``.
-    readings : ReadingStates or None
+    readings : SensorTables or None
         For an agent that sees RSS readings and not the state: how readings become discrete states.
     """
 
@@ -50,7 +50,7 @@ class DecisionProcess:
     terminal: NDArray[np.bool_]
     start: int
     cell_of_state: NDArray[np.int32] = field(default_factory=_no_table)
-    readings: ReadingStates | None = None
+    readings: SensorTables | None = None
 
     def __post_init__(self) -> None:
         if not self.cell_of_state.size:
@@ -126,3 +126,49 @@ class DecisionProcess:
                 f"decision process: state {stuck[0]} can be entered, has no possible action and "
                 "is not terminal; make it terminal or give it an action"
             )
+
+
+def process_of(world: GridWorld, task: Task, observation: Observation) -> DecisionProcess:
+    """Apply a task and an observation to a world.
+
+    Where an agent can tell all cells apart, by the cell or by readings that all differ, a state is
+    a cell; elsewhere readings make the rows of Q (`DecisionProcess.readings`).
+
+    Raises
+    ------
+    WorldError
+        When no reachable cell is a goal, or the start is one.
+    """
+    mission = world.mission()
+    terminal = task.check(mission)[0]
+    possible, arrives = world.action_mask, terminal[world.next_state]
+    heard_dbm = heard(world.rss_dbm, observation.sensitivity_dbm)
+    if task.reward == "closeness":
+        step_reward = (1.0 / world.distance_m)[world.next_state]
+    elif task.reward == "rss":
+        step_reward = heard_dbm[world.next_state] - heard_dbm[:, None]
+    else:
+        step_reward = np.zeros(possible.shape)
+    kept = 0.0 if task.goal_reward_is == "instead" else step_reward
+    with_goal = np.where(arrives, kept + task.goal_reward, step_reward)
+    reward = np.where(possible, with_goal + task.per_second, 0.0)
+    readings = (
+        None
+        if _is_told_apart(world, task, observation)
+        else sensor_tables(mission, task, observation)
+    )
+    return DecisionProcess(world.next_state, reward, terminal, world.start_state, readings=readings)
+
+
+def _is_told_apart(world: GridWorld, task: Task, observation: Observation) -> bool:
+    """Whether a row of Q per cell, with a table of rewards, is all that there is to learn."""
+    steady = observation.fluctuation.sigma_db == 0.0 or isinstance(task.goal, Within)
+    if observation.heading or task.energy is not None or not steady:
+        return False
+    if isinstance(task.goal, ReadingAbove) and task.goal.confirmations > 1:
+        return False
+    if observation.reading is None:
+        return observation.cell
+    heard_dbm = heard(world.rss_dbm, observation.sensitivity_dbm)
+    differ = np.unique(heard_dbm).size == world.n_states
+    return isinstance(observation.reading, ExactStates) and (differ or observation.cell)

@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.arguments import require
-from rssnav.kernels.q_learning_from_readings import BY_CELL, INTERVALS, TOLERANCE, Sensor
 
 AGENT_SENSITIVITY_DBM = -150.0
 """Readings that are not above this level are "no signal" [dBm]: the thermal noise of 250 Hz, which
@@ -26,7 +25,6 @@ is less than the weakest cell of the paper's scenarios has."""
 
 MIN_THRESHOLD_DB = 1e-3
 MAX_INTERVALS = 1_000_000
-_FLUCTUATION_RANGE = 9.0  # standard deviations; Box-Muller from 53 bits ends at 8.6
 
 
 @dataclass(frozen=True)
@@ -136,86 +134,3 @@ def check_sensitivity(sensitivity_dbm: float, terminal_dbm: float) -> None:
     hears = -math.inf < sensitivity_dbm < terminal_dbm
     expected = f"a level below the goal's, {terminal_dbm:g} dBm"
     require(hears, "sensitivity_dbm", sensitivity_dbm, expected)
-
-
-@dataclass(frozen=True)
-class GoalRule:
-    """When an RSS episode ends, and its reward.
-
-    Attributes
-    ----------
-    terminal_dbm : float
-        Reading above which the transmitter is found [dBm].
-    reward : float
-        Reward for finding it.
-    replaces : bool
-        Whether it replaces the last step's RSS difference or is added to it.
-    """
-
-    terminal_dbm: float
-    reward: float
-    replaces: bool
-
-
-@dataclass(frozen=True, eq=False)
-class ReadingStates:
-    """A state rule applied to the cells of a world, ready for the loop.
-
-    Attributes
-    ----------
-    sensor : Sensor
-        Readings and discrete states in the loop's terms.
-    n_bins : int
-        Bins of the tolerance states' table (0 for the other rules).
-    max_discrete_states : int
-        Most discrete states that can come to exist: the rows of the Q-table.
-    n_initial : int
-        Discrete states that exist from the start (0 for tolerance states).
-    """
-
-    sensor: Sensor
-    n_bins: int
-    max_discrete_states: int
-    n_initial: int
-
-
-def reading_states(
-    rule: StateRule,
-    fluctuation: Fluctuation,
-    rss_dbm: NDArray[np.float64],
-    goal: GoalRule,
-    sensitivity_dbm: float = AGENT_SENSITIVITY_DBM,
-) -> ReadingStates:
-    """Apply a state rule to the RSS (S,) [dBm] of a world's cells, -inf without a path."""
-    heard_dbm = heard(rss_dbm, sensitivity_dbm)
-    margin_db = _FLUCTUATION_RANGE * fluctuation.sigma_db
-    low_dbm, high_dbm = float(heard_dbm.min()) - margin_db, float(heard_dbm.max()) + margin_db
-    kind, state_of_cell, edges = BY_CELL, np.empty(0, dtype=np.int32), np.empty(0)
-    threshold, n_bins = 0.0, 0
-    if isinstance(rule, ExactStates):
-        state_of_cell = rule.discrete_states(heard_dbm)
-        n_initial = n_most = int(state_of_cell.max()) + 1
-    elif isinstance(rule, IntervalStates):
-        kind, edges = INTERVALS, np.array(rule.edges_dbm, dtype=np.float64)
-        n_initial = edges.size + 1
-        n_most = n_initial + 1
-    else:
-        kind, threshold = TOLERANCE, float(rule.threshold_db)
-        n_bins = int((high_dbm - low_dbm) * 2.0 / threshold) + 1
-        n_most = 1 + (n_bins if fluctuation.sigma_db > 0.0 else min(n_bins, rss_dbm.size))
-        n_initial = 0
-    sensor = Sensor(
-        rss_dbm=rss_dbm,
-        kind=kind,
-        state_of_cell=state_of_cell,
-        edges_dbm=edges,
-        threshold_db=threshold,
-        low_dbm=low_dbm,
-        sigma_db=float(fluctuation.sigma_db),
-        correlation=float(fluctuation.correlation),
-        sensitivity_dbm=float(sensitivity_dbm),
-        terminal_dbm=float(goal.terminal_dbm),
-        goal_reward=float(goal.reward),
-        goal_replaces=goal.replaces,
-    )
-    return ReadingStates(sensor, n_bins, n_most, n_initial)

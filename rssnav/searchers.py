@@ -21,11 +21,11 @@ from rssnav.agents import RssAgent
 from rssnav.arguments import require
 from rssnav.discrete_states import AGENT_SENSITIVITY_DBM, Fluctuation
 from rssnav.kernels import particle_filter, searchers
-from rssnav.kernels.common import Moves
 from rssnav.kernels.particle_filter import Belief, Chart, Model
-from rssnav.kernels.searchers import FlightLog, Receiver
+from rssnav.kernels.searchers import FlightLog
+from rssnav.kernels.stepping import Moves, Receiver
 from rssnav.learning_parameters import QLearning
-from rssnav.learning_rules import moves_of
+from rssnav.learning_rules import process_moves
 from rssnav.optimal_flights import path_length_m
 from rssnav.training import generator_states
 from rssnav.world import GridWorld
@@ -194,14 +194,14 @@ def search(
         require(value >= 1, name, value, "at least 1")
     agent = RssAgent(terminal_dbm=terminal_dbm, sensitivity_dbm=sensitivity_dbm)
     process = agent.decision_process(world, QLearning())
-    receiver_of = _receivers(world, fluctuation or Fluctuation(), agent)
-    fly = _flying(searcher, world, moves_of(process), sensitivity_dbm)
+    receiver = _receiver(world, fluctuation or Fluctuation(), agent)
+    fly = _flying(searcher, world, process_moves(process), sensitivity_dbm)
 
     def one(run: int) -> tuple[NDArray[np.int32], bool]:
         states = np.full(max_steps + 1, world.start_state, dtype=np.int32)
         generator = generator_states(seed, _STREAM + run)[:4].copy()
-        flight = FlightLog(states, np.zeros(1, dtype=np.int64), generator)
-        claimed = fly(receiver_of(), flight)
+        flight = FlightLog(states, np.zeros(1, dtype=np.int64), generator, np.zeros(1))
+        claimed = fly(receiver, flight)
         return states[: int(flight.seconds[0]) + 1].copy(), claimed
 
     with ThreadPoolExecutor(n_threads(threads)) as pool:
@@ -221,15 +221,11 @@ def search(
 Fly = Callable[[Receiver, FlightLog], bool]
 
 
-def _receivers(
-    world: GridWorld, fluctuation: Fluctuation, agent: RssAgent
-) -> Callable[[], Receiver]:
-    """Function that makes receivers that share all but their fluctuation."""
-    return lambda: Receiver(
+def _receiver(world: GridWorld, fluctuation: Fluctuation, agent: RssAgent) -> Receiver:
+    return Receiver(
         world.rss_dbm,
         float(fluctuation.sigma_db),
         float(fluctuation.correlation),
-        np.zeros(1),
         float(agent.terminal_dbm),
         float(agent.sensitivity_dbm),
     )

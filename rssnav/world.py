@@ -1,14 +1,9 @@
 """The world a UAV learns in: floor plan + radio map + speed -> :class:`GridWorld`.
 
-The UAV flies at constant height from cell centre to cell centre of the radio map's grid. At speed
-``v`` one step (1 s) moves it ``v`` cells along each axis it moves on, so a diagonal step is
-``sqrt(2)`` times as long as a straight one. A step is impossible when its straight segment, ends
-included, touches a wall that is solid at the flying height or leaves the outline: passing exactly
-through the end of a wall is a crash. The intersection tests are those of GEOS, whose orientation
-predicate is robust, so they need no tolerance.
-
-States are the cells that can be reached from the start by such steps, numbered breadth first from
-the start (state 0), so that the table rows of neighbouring cells lie close in memory.
+The UAV flies at constant height from cell centre to cell centre of the radio map's grid, by the
+steps of a :class:`~rssnav.missions.layout.Layout`. States are the cells that can be reached from
+the start, numbered breadth first from the start (state 0), so that the table rows of neighbouring
+cells lie close in memory.
 """
 
 from __future__ import annotations
@@ -18,30 +13,20 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order
+
+from rssnav.missions.layout import ACTION_NAMES, ACTIONS, Layout, WorldError, check_speed
+from rssnav.missions.mission import Mission
+from rssnav.missions.modes import ModeProcess
+from rssnav.missions.task import GOAL_DISTANCE_M
 
 if TYPE_CHECKING:
     from floorplans import FloorPlan
     from raytrace import RadioMap
 
-ACTION_NAMES = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")
-"""The eight actions, counter-clockwise from +x; their index is the column of every action table."""
+__all__ = ["ACTIONS", "ACTION_NAMES", "GOAL_DISTANCE_M", "GridWorld", "WorldError"]
 
-ACTIONS: NDArray[np.int64] = np.array(
-    [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)], dtype=np.int64
-)
-"""Cells moved along (x, y) by each action at speed 1, shape (8, 2)."""
-
-GOAL_DISTANCE_M = 2.0
-MAX_SPEED = 1_000_000
 _SPEEDS_TRIED = range(1, 9)
-
-
-class WorldError(ValueError):
-    """A plan, a radio map and a speed (or an agent) make no world to learn in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +82,7 @@ class GridWorld:
         speed: int = 1,
         *,
         goal_distance_m: float = GOAL_DISTANCE_M,
+        layout: Layout | None = None,
     ) -> GridWorld:
         """Build the world of a plan, its radio map and a speed.
 
@@ -110,6 +96,8 @@ class GridWorld:
             Cells moved along an axis in one step, at least 1.
         goal_distance_m : float
             The transmitter counts as reachable when a cell nearer to it than this is [m].
+        layout : Layout, optional
+            Steps of the same walls, grid and speed, found before for another transmitter or start.
 
         Raises
         ------
@@ -118,28 +106,54 @@ class GridWorld:
             centre at the start; when the speed is not a positive whole number; or when no cell
             near the transmitter can be reached at this speed.
         """
-        _check_speed(speed)
+        check_speed(speed)
         _check_map(plan, radio_map)
-        next_cell = _next_cells(plan, radio_map, speed)
-        start_cell = _start_cell(plan, radio_map)
-        reached = _reachable_cells(next_cell, start_cell)
-        distance_m = _distance_to_transmitter(plan, radio_map)
-        if not np.any(distance_m[reached] < goal_distance_m):
+        if layout is None or layout.speed != speed:
+            layout = Layout.of_plan(plan, radio_map.grid, speed)
+        source = plan.require_source()
+        reached = _reached(layout, plan, radio_map)
+        if reached is None or not np.any(reached.distance_m(*source[:2]) < goal_distance_m):
             raise _unreachable(plan, radio_map, speed, goal_distance_m)
-        n_y, n_x = radio_map.rss_dbm.shape
         return cls(
-            next_state=_renumbered(next_cell, reached),
-            rss_dbm=radio_map.rss_dbm.reshape(-1)[reached].astype(np.float64),
-            position=_cell_centres(radio_map)[reached],
-            cell=np.column_stack(np.divmod(reached, n_x)).astype(np.int32),
-            distance_m=distance_m[reached],
+            next_state=reached.next_state,
+            rss_dbm=reached.on_cells(radio_map.rss_dbm),
+            position=reached.position,
+            cell=reached.cell,
+            distance_m=reached.distance_m(*source[:2]),
             start_state=0,
-            speed=int(speed),
-            step_length_m=_step_lengths(radio_map.grid.cell_size_m * speed),
-            shape=(n_y, n_x),
-            source=plan.require_source(),
+            speed=reached.speed,
+            step_length_m=reached.step_length_m,
+            shape=reached.shape,
+            source=source,
             plan_name=plan.name,
             plan_sha256=plan.sha256,
+        )
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Steps between the world's cells, without transmitter and start."""
+        return Layout(
+            self.next_state,
+            self.position,
+            self.cell,
+            self.shape,
+            self.speed,
+            self.step_length_m,
+            self.plan_name,
+        )
+
+    def mission(self) -> Mission:
+        """Mission of one mode: the transmitter, doors and start of this world."""
+        return Mission(
+            layouts=(self.layout,),
+            layout_of_mode=np.zeros(1, dtype=np.int64),
+            rss_dbm=self.rss_dbm[None],
+            distance_m=self.distance_m[None],
+            modes=ModeProcess.steady(),
+            starts=np.array([self.start_state], dtype=np.int32),
+            start_probability=np.ones(1),
+            source=np.array([self.source[:2]], dtype=np.float64),
+            name=self.plan_name,
         )
 
     @property
@@ -147,12 +161,10 @@ class GridWorld:
         """Number S of states."""
         return self.next_state.shape[0]
 
-    @cached_property
+    @property
     def action_mask(self) -> NDArray[np.bool_]:
         """Possible actions of each state, shape (S, 8); read-only."""
-        mask = self.next_state >= 0
-        mask.flags.writeable = False
-        return mask
+        return self.layout.action_mask
 
     def on_grid(self, values: NDArray[np.generic], fill: float = 0.0) -> NDArray[np.float64]:
         """Spread per-state values over the radio map's grid.
@@ -168,69 +180,14 @@ class GridWorld:
         -------
         (..., n_y, n_x) float64
         """
-        grid = np.full((*values.shape[:-1], *self.shape), fill)
-        grid[..., self.cell[:, 0], self.cell[:, 1]] = values
-        return grid
+        return self.layout.on_grid(values, fill)
 
 
-def _step_lengths(straight_m: float) -> NDArray[np.float64]:
-    """Length of each action's step [m], shape (8,)."""
-    return straight_m * np.hypot(ACTIONS[:, 0], ACTIONS[:, 1])
-
-
-def _cell_centres(radio_map: RadioMap) -> NDArray[np.float64]:
-    """Centres (x, y) [m] of all cells in row-major order, shape (n_y * n_x, 2)."""
-    x, y = np.meshgrid(radio_map.grid.x, radio_map.grid.y)
-    return np.column_stack((x.reshape(-1), y.reshape(-1)))
-
-
-def _distance_to_transmitter(plan: FloorPlan, radio_map: RadioMap) -> NDArray[np.float64]:
-    """Horizontal distance of every cell to the transmitter [m], shape (n_y * n_x,)."""
-    offset = _cell_centres(radio_map) - np.array(plan.require_source()[:2])
-    return np.hypot(offset[:, 0], offset[:, 1])
-
-
-def _next_cells(plan: FloorPlan, radio_map: RadioMap, speed: int) -> NDArray[np.int64]:
-    """Flat index of the cell each step leads to, shape (n_y * n_x, 8); -1 where it crashes."""
-    n_y, n_x = radio_map.rss_dbm.shape
-    i_y, i_x = np.divmod(np.arange(n_y * n_x)[:, None], n_x)
-    to_x, to_y = i_x + speed * ACTIONS[:, 0], i_y + speed * ACTIONS[:, 1]
-    on_map = (to_x >= 0) & (to_x < n_x) & (to_y >= 0) & (to_y < n_y)
-    to_cell = np.where(on_map, to_y * n_x + to_x, -1)
-    cell, action = np.nonzero(on_map)
-    centres = _cell_centres(radio_map)
-    segments = np.stack((centres[cell], centres[to_cell[on_map]]), axis=1)
-    crash = _crashes(plan, radio_map.grid.height_m, segments)
-    to_cell[cell[crash], action[crash]] = -1
-    return to_cell
-
-
-def _crashes(plan: FloorPlan, height_m: float, segments: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether each segment (n, 2, 2) touches a wall or does not stay inside the outline."""
-    steps = np.array(shapely.linestrings(segments), dtype=np.object_)
-    walls = np.array(shapely.linestrings(plan.solid_segments(height_m)), dtype=np.object_)
-    shapely.prepare(plan.outline)
-    crash = ~np.array(shapely.contains_properly(plan.outline, steps))
-    touching, _ = shapely.STRtree(walls).query(steps, predicate="intersects")
-    crash[touching] = True
-    return crash
-
-
-def _reachable_cells(next_cell: NDArray[np.int64], start_cell: int) -> NDArray[np.int64]:
-    """Flat indices of the cells reachable from the start, breadth first."""
-    cell, action = np.nonzero(next_cell >= 0)
-    size = next_cell.shape[0]
-    moves = coo_array(
-        (np.ones(cell.size), (cell, next_cell[cell, action])), shape=(size, size)
-    ).tocsr()
-    return breadth_first_order(moves, start_cell, return_predecessors=False).astype(np.int64)
-
-
-def _renumbered(next_cell: NDArray[np.int64], reached: NDArray[np.int64]) -> NDArray[np.int32]:
-    """Step table in terms of states, given the cell of each state, shape (S, 8)."""
-    state_of_cell = np.full(next_cell.shape[0] + 1, -1, dtype=np.int32)
-    state_of_cell[reached] = np.arange(reached.size, dtype=np.int32)
-    return state_of_cell[next_cell[reached]]  # index -1 reads the extra row at the end
+def _reached(layout: Layout, plan: FloorPlan, radio_map: RadioMap) -> Layout | None:
+    """Cells reachable from the start, breadth first from it; None if it has no possible step."""
+    i_y, i_x = np.divmod(_start_cell(plan, radio_map), radio_map.grid.x.size)
+    start = np.flatnonzero(np.all(layout.cell == (i_y, i_x), axis=1))
+    return layout.part(layout.reachable(int(start[0]))) if start.size else None
 
 
 def _start_cell(plan: FloorPlan, radio_map: RadioMap) -> int:
@@ -246,18 +203,6 @@ def _start_cell(plan: FloorPlan, radio_map: RadioMap) -> int:
             "holds it"
         )
     return i_y * grid.x.size + i_x
-
-
-def _check_speed(speed: object) -> None:
-    if (
-        isinstance(speed, bool)
-        or not isinstance(speed, int | np.integer)
-        or not 1 <= speed <= MAX_SPEED
-    ):
-        raise WorldError(
-            f"speed: {speed!r} is not a positive whole number of cells a step; use 1, 2, 4, ... "
-            f"up to {MAX_SPEED}"
-        )
 
 
 def _check_map(plan: FloorPlan, radio_map: RadioMap) -> None:
@@ -286,13 +231,12 @@ def _unreachable(
     plan: FloorPlan, radio_map: RadioMap, speed: int, goal_distance_m: float
 ) -> WorldError:
     """Build the error for an unreachable transmitter; it lists the speeds that do reach it."""
-    near = _distance_to_transmitter(plan, radio_map) < goal_distance_m
-    start = _start_cell(plan, radio_map)
-    working = [
-        other
-        for other in _SPEEDS_TRIED
-        if near[_reachable_cells(_next_cells(plan, radio_map, other), start)].any()
-    ]
+    working: list[int] = []
+    for other in _SPEEDS_TRIED:
+        reached = _reached(Layout.of_plan(plan, radio_map.grid, other), plan, radio_map)
+        near = reached and reached.distance_m(*plan.require_source()[:2]) < goal_distance_m
+        if near is not None and near.any():
+            working.append(other)
     remedy = (
         f"speeds that can: {', '.join(map(str, working))}"
         if working

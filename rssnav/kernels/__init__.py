@@ -1,14 +1,12 @@
 """Compiled loops of the learning half: arrays and scalars in, arrays filled, nothing checked.
 
-Learning rules, one loop each:
-
-``q_learning``
-    Algorithm 1 with one row of Q per state, the paper's case.
-``q_learning_from_readings``
-    Algorithm 1 with discrete states made from RSS readings: exact values that repeat, tolerance
-    states created as readings come, intervals, and readings that fluctuate.
-``temporal_difference``
-    Q-learning, SARSA and Double Q-learning.
+``stepping``
+    One second of a flight: modes of the world, readings, rewards, ends of episodes.
+``learning``
+    Algorithm 1, SARSA and Double Q-learning: the loop of episodes.
+``reading_states``
+    Rows of Q made from what an agent observes: exact values that repeat, tolerance states created
+    as readings come, intervals, readings that fluctuate, headings, doors seen.
 
 Searchers, which do not learn from flight to flight:
 
@@ -21,8 +19,6 @@ Shared:
 
 ``common``
     Arguments of the loops, decay, log of episodes, convergence.
-``rss_fluctuation``
-    What a receiver reads in a cell.
 ``xoshiro``
     The random number generator of each run.
 ``compiling``

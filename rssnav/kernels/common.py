@@ -17,16 +17,6 @@ Index = int | np.uint64
 """Unsigned in the fast loop, where numba then omits its check for negative indices."""
 
 
-class Moves(NamedTuple):
-    """Steps of a decision process: eight actions per state, row after row."""
-
-    next_state: NDArray[np.int32]  # (S * 8,) -1 where the step would crash
-    possible: NDArray[np.uint8]  # (S * 8,) the possible actions of a state first, in action order
-    n_possible: NDArray[np.uint8]  # (S,)
-    terminal: NDArray[np.bool_]  # (S,)
-    start: int
-
-
 class Parameters(NamedTuple):
     """Scalars of Algorithm 1 and of its interpretation."""
 
@@ -37,7 +27,7 @@ class Parameters(NamedTuple):
     episode_decay: float  # and before every episode
     max_steps: int
     all_actions: bool  # the maximum runs over blocked actions too
-    random_ties: bool  # among equally good actions pick at random, not the first
+    rule: int  # Q_LEARNING, SARSA or DOUBLE_Q
 
 
 class Run(NamedTuple):
@@ -48,6 +38,8 @@ class Run(NamedTuple):
     generator: NDArray[np.uint64]  # (4,) exploration and fluctuation
     tie_generator: NDArray[np.uint64]  # (4,) among equally good actions, where that is random
     rates: NDArray[np.float64]  # (2,) epsilon, alpha
+    whole: NDArray[np.int64]  # (5,) the flight, where a sensor reads: see `stepping.Flight`
+    real: NDArray[np.float64]  # (3,) likewise
     counters: NDArray[np.int64]  # (N_COUNTERS,) indexed by the names below
     episodes: NDArray[np.int32]  # (E, 3) of each episode: steps, diagonal steps, 1 if truncated
 
@@ -59,9 +51,8 @@ class Run(NamedTuple):
     PATH_HASH,
     CONVERGED_EPISODE,
     CONVERGED_STEPS,
-    N_DISCRETE_STATES,
-) = range(7)
-N_COUNTERS = 7
+) = range(6)
+N_COUNTERS = 6
 STEPS, DIAGONAL_STEPS, TRUNCATED = range(3)
 _SAME_PATHS_TO_CONVERGE = 3
 

@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.kernels.common import Moves
 from rssnav.kernels.compiling import jit
-from rssnav.kernels.searchers import FlightLog, Receiver, is_over, read, spend_second
+from rssnav.kernels.searchers import FlightLog, is_over, reading_of, spend_second
+from rssnav.kernels.stepping import Moves, Receiver
 from rssnav.kernels.xoshiro import draw, gaussian, unit_from_high_bits
 
 X, Y, POWER, EXPONENT = range(4)
@@ -189,7 +189,7 @@ def track(
     generator, state = flight.generator, int(flight.states[0])
     _begin(belief, model, generator)
     since_drawn = model.steps_to_draw
-    reading_dbm = read(receiver, generator, state)
+    reading_dbm = reading_of(receiver, flight, state)
     while reading_dbm <= receiver.found_dbm and not is_over(flight):
         x, y = chart.position[state]
         if not weigh(belief, model, x, y, reading_dbm):
@@ -202,5 +202,5 @@ def track(
         state = _nearer(moves, chart.hops, state)
         since_drawn += 1
         spend_second(flight, state)
-        reading_dbm = read(receiver, generator, state)
+        reading_dbm = reading_of(receiver, flight, state)
     return reading_dbm > receiver.found_dbm

@@ -10,21 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.kernels.common import Moves
 from rssnav.kernels.compiling import jit
-from rssnav.kernels.rss_fluctuation import fluctuating
+from rssnav.kernels.stepping import Moves, Receiver, read
 from rssnav.kernels.xoshiro import draw, index_from_low_bits
-
-
-class Receiver(NamedTuple):
-    """What a searcher reads."""
-
-    rss_dbm: NDArray[np.float64]  # (S,) without fluctuation
-    sigma_db: float  # standard deviation of the fluctuation
-    correlation: float  # of the fluctuation from one reading to the next
-    fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
-    found_dbm: float  # a reading above it means that the transmitter is found
-    sensitivity_dbm: float  # readings that are not above it are "no signal"
 
 
 class FlightLog(NamedTuple):
@@ -33,19 +21,13 @@ class FlightLog(NamedTuple):
     states: NDArray[np.int32]  # (max_steps + 1,) the start first
     seconds: NDArray[np.int64]  # (1,) seconds flown
     generator: NDArray[np.uint64]  # (4,)
+    fluctuation_db: NDArray[np.float64]  # (1,) of the latest reading
 
 
 @jit(inline=True)
-def read(receiver: Receiver, generator: NDArray[np.uint64], state: int) -> float:
-    """Reading in a state [dBm]; the sensitivity where there is no signal."""
-    level_dbm = fluctuating(
-        receiver.rss_dbm[state],
-        receiver.sigma_db,
-        receiver.correlation,
-        receiver.fluctuation_db,
-        generator,
-    )
-    return max(level_dbm, receiver.sensitivity_dbm)
+def reading_of(receiver: Receiver, flight: FlightLog, state: int) -> float:
+    """Reading in a state [dBm]."""
+    return read(receiver, flight.fluctuation_db, flight.generator, state)
 
 
 @jit(inline=True)
@@ -78,7 +60,7 @@ def walk(moves: Moves, receiver: Receiver, flight: FlightLog, steps: int) -> boo
         if is_over(flight):
             return False
         state = random_step(moves, flight, state)
-        if read(receiver, flight.generator, state) > receiver.found_dbm:
+        if reading_of(receiver, flight, state) > receiver.found_dbm:
             return True
     return False
 
@@ -87,10 +69,10 @@ def walk(moves: Moves, receiver: Receiver, flight: FlightLog, steps: int) -> boo
 def _mean_reading(receiver: Receiver, flight: FlightLog, readings: int) -> float:
     """Mean of readings where the flight is, one a second, the first of them on arrival [dBm]."""
     state = int(flight.states[flight.seconds[0]])
-    total, taken = read(receiver, flight.generator, state), 1
+    total, taken = reading_of(receiver, flight, state), 1
     while taken < readings and not is_over(flight):
         spend_second(flight, state)
-        total += read(receiver, flight.generator, state)
+        total += reading_of(receiver, flight, state)
         taken += 1
     return total / taken
 

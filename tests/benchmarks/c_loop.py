@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.learning_rules import LearningProblem, TabularLearner
+from rssnav.learning_rules import LearningProblem
 
 SOURCE = Path(__file__).with_name("q_loop.c")
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
@@ -55,7 +55,7 @@ class CRun:
     def __init__(
         self, problem: LearningProblem, generator: NDArray[np.uint64], episodes: int
     ) -> None:
-        twin = TabularLearner(problem, generator, episodes)
+        twin = problem.learner(generator, episodes)
         run, moves, greedy = twin.run, twin.moves, twin.greedy
         self.episodes = episodes
         self.q, self.visits = run.q.copy(), run.visits.copy()
@@ -70,7 +70,7 @@ class CRun:
             moves.n_possible.ctypes.data,
             moves.terminal.ctypes.data,
             reward.ctypes.data,
-            moves.start,
+            int(moves.starts[0]),
         )
         self._parameters = _Parameters(
             parameters.gamma,

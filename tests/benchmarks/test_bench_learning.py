@@ -19,7 +19,7 @@ from raytrace.threads import n_threads
 from rssnav import LocationAgent, QLearning, RssAgent, train
 from rssnav.agents import Agent
 from rssnav.kernels import common
-from rssnav.learning_rules import LearningProblem, TabularLearner
+from rssnav.learning_rules import Learner, LearningProblem
 from rssnav.training import generator_states
 from rssnav.world import ACTIONS, GridWorld
 
@@ -57,7 +57,7 @@ def hall_with_pillars(n_x: int = 96, n_y: int = 26) -> GridWorld:
     )
 
 
-def fly_all(learner: TabularLearner, episodes: int) -> None:
+def fly_all(learner: Learner, episodes: int) -> None:
     while learner.run.counters[common.EPISODE] < episodes:
         learner.advance(episodes)
 
@@ -69,7 +69,7 @@ AGENTS = pytest.mark.parametrize("agent", [RssAgent(), LocationAgent()], ids=["r
 @AGENTS
 def test_c_loop_gives_the_same_results(agent: Agent, tmp_path):
     problem = LearningProblem.of(hall_with_pillars(), agent, QLearning())
-    learner = TabularLearner(problem, generator_states(0, 0), 100)
+    learner = problem.learner(generator_states(0, 0), 100)
     fly_all(learner, 100)
     library = build(tmp_path, "-ffp-contract=off")
     for function in ("learn_plain", "learn_cached"):
@@ -89,7 +89,7 @@ def test_bench_kernel_beside_c(agent: Agent, tmp_path, benchmark):
     rates: dict[str, list[float]] = {"kernel": [], "learn_plain": [], "learn_cached": []}
 
     def one_round() -> None:
-        learner = TabularLearner(problem, generator_states(0, 0), episodes)
+        learner = problem.learner(generator_states(0, 0), episodes)
         begin = time.thread_time()
         fly_all(learner, episodes)
         seconds = time.thread_time() - begin

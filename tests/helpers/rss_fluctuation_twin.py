@@ -1,4 +1,4 @@
-"""The fluctuation of RSS readings in NumPy: the readable twin of `rssnav.kernels.rss_fluctuation`.
+"""The fluctuation of RSS readings in NumPy: the readable twin of `stepping.fluctuating`.
 
 With independent standard normal z_k (Box-Muller), standard deviation s and correlation c, the
 fluctuation is the stationary first-order autoregressive process

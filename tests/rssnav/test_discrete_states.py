@@ -3,11 +3,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from q_learning_twin import ToleranceTwin
-from state_rules import GOAL, states_of
+from state_rules import states_of, tables_of
 
 from rssnav import ExactStates, Fluctuation, IntervalStates, ToleranceStates
-from rssnav.discrete_states import reading_states
-from rssnav.kernels import q_learning_from_readings as kernel
+from rssnav.kernels.stepping import read
 
 
 def test_exact_states_number_values_in_the_order_they_appear():
@@ -91,14 +90,9 @@ def test_fluctuation_out_of_range_is_refused():
 def test_fluctuation_has_the_stated_deviation_and_correlation(correlation):
     rss_dbm = np.array([-60.0, -50.0])
     fluctuation = Fluctuation(sigma_db=2.0, correlation=correlation)
-    states = reading_states(ToleranceStates(1.0), fluctuation, rss_dbm, GOAL)
-    known = kernel.KnownStates(
-        np.zeros(0, np.int32), np.zeros(0), np.zeros(1), np.full(1, -1, np.int32)
-    )
-    generator = np.array([1, 2, 3, 4], dtype=np.uint64)
-    readings = np.array(
-        [kernel.reading_in(states.sensor, known, generator, 0) for _ in range(40_000)]
-    )
+    receiver = tables_of(ToleranceStates(1.0), fluctuation, rss_dbm).sensor.receiver
+    generator, last_db = np.array([1, 2, 3, 4], dtype=np.uint64), np.zeros(1)
+    readings = np.array([read(receiver, last_db, generator, 0) for _ in range(40_000)])
     fluctuations = readings[100:] - rss_dbm[0]
     n_independent = fluctuations.size * (1 - correlation) / (1 + correlation)
     assert abs(fluctuations.mean()) < 4 * 2.0 / np.sqrt(n_independent)

@@ -24,7 +24,7 @@ from rssnav import (
     value_iteration,
 )
 from rssnav.kernels import common
-from rssnav.learning_rules import LEARNERS, LearningProblem
+from rssnav.learning_rules import RULES, LearningProblem
 from rssnav.optimal_flights import path_length_m
 from rssnav.training import generator_states
 
@@ -91,7 +91,7 @@ def test_planning_trades_length_for_turns(slalom):
     assert short.length_m == pytest.approx(shortest.length_m)
 
 
-@pytest.mark.parametrize("rule", LEARNERS)
+@pytest.mark.parametrize("rule", RULES)
 def test_it_is_trained_and_its_visits_and_flights_are_cells(room_world, rule):
     learning = replace(LEARNING, rule=rule)
     result = train(

@@ -13,7 +13,7 @@ from rssnav.agents import RssAgent
 from rssnav.kernels import particle_filter
 from rssnav.kernels.particle_filter import Belief, Chart, Model
 from rssnav.learning_parameters import QLearning
-from rssnav.learning_rules import moves_of
+from rssnav.learning_rules import process_moves
 from rssnav.searchers import ParticleFilter, RandomWalk, RssAscent, search
 from rssnav.training import generator_states
 
@@ -168,7 +168,7 @@ def test_hops_are_shortest_distances(room_world):
     chart = Chart(room_world.position, hops, queue)
     distances = all_distances(graph, unweighted=True)
     for place in range(0, size, 7):
-        particle_filter.count_hops(moves_of(process), chart, place)
+        particle_filter.count_hops(process_moves(process), chart, place)
         assert np.array_equal(hops, distances[:, place])
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numba
 import pytest
+from rssnav.kernels.q_learning import learn
 
 import raytrace.kernels
 import rssnav.kernels
@@ -14,7 +15,6 @@ from raytrace.kernels.beams import grow_tree_arrays
 from raytrace.kernels.cache import KernelCache, cache_folder, sources_digest
 from raytrace.kernels.compiling import jit as tracer_jit
 from rssnav.kernels.compiling import jit as loop_jit
-from rssnav.kernels.q_learning import learn
 
 
 @pytest.fixture

@@ -15,9 +15,9 @@ from rssnav import (
     RssAgent,
     ToleranceStates,
 )
-from rssnav.discrete_states import Fluctuation, GoalRule, reading_states
 from rssnav.kernels import common, xoshiro
-from rssnav.learning_rules import LearningProblem, ReadingLearner, TabularLearner
+from rssnav.learning_rules import LearningProblem
+from rssnav.missions.tables import sensor_tables
 from rssnav.training import generator_states
 
 # A decay that takes epsilon and alpha to their minimum within the test, and a cap that truncates.
@@ -80,7 +80,7 @@ def test_generator_gives_the_published_first_values():
 def test_tabular_loop_equals_its_twin(room_world, agent, learning):
     problem = LearningProblem.of(room_world, agent, learning)
     generators = generator_states(7, 0)
-    learner = advance(TabularLearner(problem, generators, 40), 40)
+    learner = advance(problem.learner(generators, 40), 40)
     assert learner.run.episodes[:, common.TRUNCATED].any()
     assert_same(learner, flown(Twin(problem.process, learning, generators), 40))
 
@@ -88,11 +88,11 @@ def test_tabular_loop_equals_its_twin(room_world, agent, learning):
 @pytest.mark.parametrize("learning", INTERPRETATIONS.values(), ids=INTERPRETATIONS)
 def test_reading_loop_equals_the_tabular_one_with_a_discrete_state_per_cell(room_world, learning):
     problem = LearningProblem.of(room_world, RssAgent(), learning)
-    goal = GoalRule(-21.0, learning.goal_reward, learning.goal_reward_is == "instead")
-    states = reading_states(ExactStates(), Fluctuation(), room_world.rss_dbm, goal)
-    generators = generator_states(8, 0)
-    by_reading = advance(ReadingLearner(problem, states, generators, 40), 40)
-    tabular = advance(TabularLearner(problem, generators, 40), 40)
+    agent, generators = RssAgent(), generator_states(8, 0)
+    readings = sensor_tables(room_world.mission(), agent.task(learning), agent.observation())
+    reading = LearningProblem(replace(problem.process, readings=readings), learning)
+    by_reading = advance(reading.learner(generators, 40), 40)
+    tabular = advance(problem.learner(generators, 40), 40)
     assert np.array_equal(by_reading.run.episodes, tabular.run.episodes)
     assert np.array_equal(by_reading.run.visits, tabular.run.visits)
     leaves = ~problem.process.terminal  # rows of terminal states are never used

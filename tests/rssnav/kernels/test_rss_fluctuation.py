@@ -9,7 +9,7 @@ from rss_fluctuation_twin import fluctuation_db
 
 from rssnav import Fluctuation, QLearning, RssAgent, ToleranceStates
 from rssnav.kernels import common
-from rssnav.kernels.rss_fluctuation import fluctuating
+from rssnav.kernels.stepping import fluctuating
 from rssnav.learning_rules import LearningProblem
 from rssnav.training import generator_states
 

@@ -8,8 +8,8 @@ from q_learning_twin import Twin, low_index
 from small_worlds import SmallPlan, world_of
 
 from rssnav import IntervalStates, LocationAgent, QLearning, RssAgent, train, value_iteration
-from rssnav.kernels import common, temporal_difference
-from rssnav.learning_rules import LearningProblem, TabularLearner, TemporalDifferenceLearner
+from rssnav.kernels import common
+from rssnav.learning_rules import LearningProblem
 from rssnav.training import generator_states
 
 QUICK = QLearning(eta=2e-2, max_steps=60, epsilon_min=0.1)
@@ -100,8 +100,8 @@ def test_the_loop_equals_its_twin(room_world, agent, rule, reading):
 def test_with_the_maximum_it_is_the_fast_loop_to_the_last_bit(room_world, agent, learning):
     problem = LearningProblem.of(room_world, agent, learning)
     generators = generator_states(5, 0)
-    fast = advance(TabularLearner(problem, generators, 40), 40)
-    slow = TemporalDifferenceLearner(problem, generators, 40, rule=temporal_difference.Q_LEARNING)
+    fast = advance(problem.learner(generators, 40), 40)
+    slow = problem.learner(generators, 40, row_maxima=False)
     advance(slow, 40)
     assert np.array_equal(fast.run.episodes, slow.run.episodes)
     assert np.array_equal(fast.run.q, slow.run.q)
