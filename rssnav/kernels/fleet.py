@@ -43,14 +43,14 @@ class Fleet(NamedTuple):
         )
 
 
-@jit(inline=True)
+@jit(fused=True)
 def begin_flight(moves: Moves, sensor: Sensor, fleet: Fleet, i: int) -> None:
     """Begin the next episode of a flight."""
     begin(moves, sensor, Flight(fleet.whole[i], fleet.real[i], fleet.generator[i]))
     fleet.reward[i], fleet.status[i] = 0.0, RUNNING
 
 
-@jit(inline=True)
+@jit(fused=True)
 def step_flight(moves: Moves, sensor: Sensor, fleet: Fleet, i: int, action: int) -> None:
     """Fly one action; an impossible step leaves the UAV where it is, as hovering does."""
     flight = Flight(fleet.whole[i], fleet.real[i], fleet.generator[i])

@@ -209,7 +209,7 @@ def _step(
     return reward, status == FOUND, status != RUNNING, int(run.whole[SECONDS]), row, next_entry
 
 
-@jit(inline=True)
+@jit(fused=True)
 def _bootstrap(
     moves: Moves,
     parameters: Parameters,

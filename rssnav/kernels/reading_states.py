@@ -28,13 +28,13 @@ BY_CELL, TOLERANCE, INTERVALS = range(3)
 _NEIGHBOUR_BINS = 3  # a threshold is two bins wide; one more for rounding
 
 
-@jit(inline=True)
+@jit(fused=True)
 def _bin(rows: Rows, reading: float) -> int:
     position = int((reading - rows.low_dbm) * (2.0 / rows.threshold_db))
     return min(max(position, 0), rows.state_of_bin.size - 1)
 
 
-@jit(inline=True)
+@jit(fused=True)
 def _nearest_known(rows: Rows, reading: float) -> int:
     """Nearest known state within Th of a reading, at equal distance the older; -1 if none."""
     centre = _bin(rows, reading)
@@ -50,13 +50,13 @@ def _nearest_known(rows: Rows, reading: float) -> int:
     return nearest
 
 
-@jit(inline=True)
+@jit(fused=True)
 def _next_number(rows: Rows) -> int:
     rows.n_known[0] += 1
     return int(rows.n_known[0] - 1)
 
 
-@jit(inline=True)
+@jit(fused=True)
 def discrete_state_of(sensor: Sensor, place: int, reading: float) -> int:
     """Discrete state of a reading; "no signal" and tolerance states are created when needed."""
     rows = sensor.rows
@@ -76,7 +76,7 @@ def discrete_state_of(sensor: Sensor, place: int, reading: float) -> int:
     return state
 
 
-@jit(inline=True)
+@jit(fused=True)
 def row_of(sensor: Sensor, flight: Flight) -> int:
     """Row of Q of what the agent of a flight observes."""
     rows, whole = sensor.rows, flight.whole

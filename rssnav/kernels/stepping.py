@@ -133,7 +133,7 @@ READING_DBM, ENERGY_J, FLUCTUATION_DB = range(3)
 RUNNING, FOUND, TRUNCATED = range(3)
 
 
-@jit(inline=True)
+@jit(fused=True)
 def fluctuating(
     mean_dbm: float,
     sigma_db: float,
@@ -150,7 +150,7 @@ def fluctuating(
     return mean_dbm + fluctuation_db[0]
 
 
-@jit(inline=True)
+@jit(fused=True)
 def read(
     receiver: Receiver,
     fluctuation_db: NDArray[np.float64],
@@ -171,16 +171,20 @@ def read(
     return max(level_dbm, receiver.sensitivity_dbm)
 
 
-@jit(inline=True)
+@jit(fused=True)
 def drawn(cumulative: NDArray[np.float64], generator: NDArray[np.uint64]) -> int:
     """Index drawn by cumulative probabilities; nothing is drawn where there is no choice."""
     if cumulative.size == 1:
         return 0
     level = unit_from_high_bits(draw(generator)) * cumulative[-1]
-    return int(np.searchsorted(cumulative, level, side="right"))
+    low, high = 0, cumulative.size - 1  # the first entry above the level is in low..high
+    while low < high:
+        middle = (low + high) // 2
+        low, high = (low, middle) if cumulative[middle] > level else (middle + 1, high)
+    return low
 
 
-@jit(inline=True)
+@jit(fused=True)
 def _next_mode(modes: Modes, mode: int, generator: NDArray[np.uint64]) -> int:
     """Mode after a second."""
     if not modes.change or unit_from_high_bits(draw(generator)) < modes.stays[mode]:
@@ -189,7 +193,7 @@ def _next_mode(modes: Modes, mode: int, generator: NDArray[np.uint64]) -> int:
     return drawn(modes.next_cumulative[mode * n : (mode + 1) * n], generator)
 
 
-@jit(inline=True)
+@jit(fused=True)
 def _remember(doors: Doors, flight: Flight) -> None:
     """Note the doors seen from the cell: bits of those ever seen, then of those closed."""
     if doors.n_doors == 0:
@@ -200,7 +204,7 @@ def _remember(doors: Doors, flight: Flight) -> None:
     flight.whole[MEMORY] = ((was_seen | seen) << doors.n_doors) | closed
 
 
-@jit(inline=True)
+@jit(fused=True)
 def begin(moves: Moves, sensor: Sensor, flight: Flight) -> None:
     """Draw mode and cell of a new episode, and take its first reading."""
     whole = flight.whole
@@ -215,14 +219,14 @@ def begin(moves: Moves, sensor: Sensor, flight: Flight) -> None:
     )
 
 
-@jit(inline=True)
+@jit(fused=True)
 def first_entry(sensor: Sensor, flight: Flight) -> int:
     """Entry of the flight's cell and action 0 in the table of steps of its mode."""
     layout = sensor.modes.layout[flight.whole[MODE]]
     return int(8 * (layout * sensor.n_cells + flight.whole[CELL]))
 
 
-@jit(inline=True)
+@jit(fused=True)
 def _confirmed(sensor: Sensor, flight: Flight, place: int) -> bool:
     """Whether readings find the transmitter.
 
@@ -245,7 +249,7 @@ def _confirmed(sensor: Sensor, flight: Flight, place: int) -> bool:
     return taken == task.confirmations and total > taken * receiver.found_dbm
 
 
-@jit(inline=True)
+@jit(fused=True)
 def _reward(
     task: TaskTables, place: int, rise_db: float, seconds: int, energy_j: float, found: bool
 ) -> float:
@@ -259,7 +263,7 @@ def _reward(
     return reward + task.goal_reward if found else reward
 
 
-@jit(inline=True)
+@jit(fused=True)
 def fly(sensor: Sensor, flight: Flight, action: int, arrived: int) -> tuple[float, int]:
     """Fly a possible step to a cell, or hover, and read: (reward, RUNNING, FOUND or TRUNCATED)."""
     whole, real, task = flight.whole, flight.real, sensor.task
