@@ -110,6 +110,10 @@ def _tuple_faults(value: object, args: tuple[Any, ...], place: Place) -> Iterato
     if len(hints) != len(value):
         yield PlanError(f"expected {len(hints)} values", place, value)
         return
+    if all(hint is float for hint in hints) and all(
+        type(x) is float and isfinite(x) for x in value
+    ):
+        return
     for index, (item, hint) in enumerate(zip(value, hints, strict=True)):
         yield from type_faults(item, hint, (*place, index))
 

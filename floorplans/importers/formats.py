@@ -14,10 +14,10 @@ from floorplans.importers.assembly.assemble import assemble
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported, UnusablePlanError
 from floorplans.importers.own_axes import oblique_deg, placed, turned
-from floorplans.importers.progress import N_STEPS, Progress, no_progress
+from floorplans.importers.progress import Progress, Report, Step, no_report, reporter
 from floorplans.plan import FloorPlan
 
-Reader = Callable[[Path, ImportOptions], Draft | FloorPlan]
+Reader = Callable[[Path, ImportOptions, Report], Draft | FloorPlan]
 """Returns a whole plan only for a file that holds one, as `floorplans.exporters` writes it."""
 
 _HEAD_BYTES = 4096
@@ -132,8 +132,8 @@ def import_plan(
     options : ImportOptions, optional
         What the user specifies.
     progress : callable, optional
-        Called as ``progress(done, total)`` with the numbers of finished and of all steps: reading
-        the file, finding the outline, checking the plan.
+        Called as ``progress(done, total)`` with the numbers of finished and of all steps; see
+        `floorplans.importers.progress.Step`.
 
     Returns
     -------
@@ -146,11 +146,11 @@ def import_plan(
     """
     options = options or ImportOptions()
     path = Path(path)
-    report = progress or no_progress
+    report = reporter(progress)
     try:
-        report(0, N_STEPS)
-        drafted = read_draft(path, options)
-        report(1, N_STEPS)
+        report(Step.BEGUN)
+        drafted = read_draft(path, options, report)
+        report(Step.DRAFT_READ)
         if isinstance(drafted, FloorPlan):
             return Imported.from_plan(drafted, options, path.name)
         turn_deg = 0.0 if options.keep_axes else oblique_deg(drafted.walls)
@@ -165,11 +165,11 @@ def import_plan(
         raise PlanError(f"its geometry makes no plan: {error}", origin=str(path)) from error
 
 
-def read_draft(path: Path, options: ImportOptions) -> Draft | FloorPlan:
+def read_draft(path: Path, options: ImportOptions, report: Report = no_report) -> Draft | FloorPlan:
     """Read a file with the reader of its format."""
     kind = _format_of(path)
     if path.is_dir():
-        return kind.reader()(path, options)
+        return kind.reader()(path, options, report)
     try:
         with path.open("rb") as file:
             head = file.read(_HEAD_BYTES)
@@ -186,7 +186,7 @@ def read_draft(path: Path, options: ImportOptions) -> Draft | FloorPlan:
             f"the file ends in {path.suffix} but does not begin like a {kind.title}{hint}",
             origin=str(path),
         )
-    return kind.reader()(path, options)
+    return kind.reader()(path, options, report)
 
 
 def _format_of(path: Path) -> Format:

@@ -99,10 +99,13 @@ def _groups(walls: Sequence[Wall], reach_m: float, sideways_fraction: float) -> 
 def _nearly_parallel(walls: Sequence[Wall], distance_m: float) -> list[list[int]]:
     """Walls within a distance of each wall that two lines of one group may have, in order."""
     lines = centre_lines(walls)
-    first, second = shapely.STRtree(lines).query(lines, "dwithin", distance=distance_m)
     along = np.array([direction(wall) for wall in walls]).reshape(-1, 2)
+    around = shapely.box(*(shapely.bounds(lines) + distance_m * np.array([-1, -1, 1, 1])).T)
+    first, second = shapely.STRtree(lines).query(around)
     sines = along[first, 0] * along[second, 1] - along[first, 1] * along[second, 0]
     kept = (np.abs(sines) <= 2 * _MAX_SINE) & (first != second)
+    first, second = first[kept], second[kept]
+    kept = np.array(shapely.dwithin(lines[first], lines[second], distance_m), dtype=np.bool_)
     near: list[list[int]] = [[] for _ in walls]
     order = np.lexsort((second[kept], first[kept]))
     for i, j in zip(first[kept][order].tolist(), second[kept][order].tolist(), strict=True):

@@ -23,6 +23,8 @@ from floorplans.walls import TOLERANCE_M, Point, Wall, centre_lines
 
 _MIN_SINE = sin(radians(15.0))
 """Sine of the smallest angle at which centre lines are prolonged to where they cross."""
+_WIDER = 1.01
+"""So many times the distance is looked up, as distances are rounded."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def _moved_to_walls(
     """
     points = ends.reshape(-1, 2)
     thickness_m = np.array([wall.thickness_m for wall in walls])
-    near = _near_walls(walls, points, 1.5 * (reach_m + thickness_m.max() / 2))
+    near = _near_walls(walls, points, reach_m, 1.0)
     touched = near.gap_m <= TOLERANCE_M
     is_settled = _any_of_each(near.end, touched & near.is_inner, len(points))
     in_corner = _any_of_each(near.end, touched, len(points))
@@ -108,11 +110,22 @@ class _NearWalls:
 
 
 def _near_walls(
-    walls: Sequence[Wall], points: NDArray[np.float64], distance_m: float
+    walls: Sequence[Wall], points: NDArray[np.float64], reach_m: float, body: float
 ) -> _NearWalls:
-    """Other walls within a distance of the ends, which lie at points (2 n, 2)."""
+    """Other walls near the ends, which lie at points (2 n, 2).
+
+    The reach is counted from the walls' bodies if `body` is 1, from their centre lines if it is 0.
+    """
     lines, ends = centre_lines(walls), _points(points)
-    end, near = shapely.STRtree(lines).query(ends, predicate="dwithin", distance=distance_m)
+    across_m = reach_m + body * np.array([wall.thickness_m for wall in walls]) / 2
+    pairs: list[NDArray[np.int64]] = []
+    for among in _alike(across_m):
+        distance_m = _WIDER * np.hypot(across_m[among].max(), across_m).repeat(2)
+        end, near = shapely.STRtree(lines[among]).query(ends, "dwithin", distance=distance_m)
+        pairs.append(np.stack([end, among[near]]))
+    end, near = np.concatenate(pairs, axis=1)
+    order = np.lexsort((near, end))
+    end, near = end[order], near[order]
     end, near = (x[near != end // 2] for x in (end, near))
     start, stop = np.array([(wall.start, wall.end) for wall in walls]).transpose(1, 0, 2)
     step = (stop - start)[near]
@@ -130,6 +143,12 @@ def _near_walls(
     )
 
 
+def _alike(sizes: NDArray[np.float64]) -> list[NDArray[np.int64]]:
+    """Indices of sizes that differ by less than a factor of two."""
+    octave = np.floor(np.log2(sizes))
+    return [np.flatnonzero(octave == k) for k in np.unique(octave)]
+
+
 def _any_of_each(which: NDArray[np.int64], flags: NDArray[np.bool_], n: int) -> NDArray[np.bool_]:
     """Whether any flag of each number below n is set, (n,)."""
     return np.bincount(which[flags], minlength=n) > 0
@@ -138,7 +157,7 @@ def _any_of_each(which: NDArray[np.int64], flags: NDArray[np.bool_], n: int) -> 
 def _on_walls(walls: Sequence[Wall], ends: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which ends (n, 2, 2) lie on another wall between its ends, (2 n,)."""
     points = ends.reshape(-1, 2)
-    near = _near_walls(walls, points, TOLERANCE_M)
+    near = _near_walls(walls, points, TOLERANCE_M, 0.0)
     return _any_of_each(near.end, near.is_inner, len(points))
 
 

@@ -85,6 +85,8 @@ def moved_wall(parts: Sequence[Wall], start: Point, end: Point) -> Wall:
     that of the earlier part stays.
     """
     bare = replace(parts[0], start=start, end=end, openings=())
+    if not any(part.openings for part in parts):
+        return bare
     openings: list[Opening] = []
     for part in parts:
         for moved in _moved_openings(part, bare):

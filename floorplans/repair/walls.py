@@ -113,7 +113,10 @@ def _meeting_exactly(walls: Sequence[Wall]) -> tuple[Wall, ...]:
         same[j] = min(same[j], same[i])
     points = [(float(x), float(y)) for x, y in ends[same]]
     pairs = zip(walls, points[::2], points[1::2], strict=True)
-    return tuple(replace(wall, start=start, end=end) for wall, start, end in pairs)
+    return tuple(
+        wall if (start, end) == (wall.start, wall.end) else replace(wall, start=start, end=end)
+        for wall, start, end in pairs
+    )
 
 
 def _stops(wall: Wall, cuts: Iterable[float]) -> list[float]:

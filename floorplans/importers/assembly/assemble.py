@@ -28,7 +28,7 @@ from floorplans.importers.defaults import (
 )
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported, ImportRecord
-from floorplans.importers.progress import N_STEPS, Progress, no_progress
+from floorplans.importers.progress import Report, Step, no_report
 from floorplans.importers.tangle import check_crossings
 from floorplans.materials import MATERIALS, PlanMaterial
 from floorplans.plan import FloorPlan
@@ -49,7 +49,7 @@ _GIVEN_BY_USER = ("name", "height_m", "floor_material", "ceiling_material", "sou
 
 
 def assemble(
-    draft: Draft, options: ImportOptions, source_file: str, progress: Progress = no_progress
+    draft: Draft, options: ImportOptions, source_file: str, report: Report = no_report
 ) -> Imported:
     """Create a plan from a draft.
 
@@ -59,8 +59,8 @@ def assemble(
     options : ImportOptions
     source_file : str
         Name of the file the draft is from.
-    progress : callable
-        Called as ``progress(done, total)`` with the numbers of steps, of which one is done before.
+    report : callable
+        Called with finished steps.
 
     Returns
     -------
@@ -77,12 +77,13 @@ def assemble(
     _check(draft, options)
     height_m = options.height_m or draft.height_m or HEIGHT_M
     best: tuple[ImportRecord, Building] | None = None
-    for building in buildings(draft, _walls(draft, options, height_m), options, height_m):
-        progress(2, N_STEPS)
+    walls = _walls(draft, options, height_m)
+    for building in buildings(draft, walls, options, height_m, report):
         record = _record(draft, options, building, height_m, source_file)
+        report(Step.PLACES_CHOSEN)
         imported = _checked(record)
         if imported is not None:
-            progress(N_STEPS, N_STEPS)
+            report(Step.PLAN_CHECKED)
             return imported
         best = best or (record, building)
     if best is None:

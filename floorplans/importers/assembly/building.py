@@ -13,6 +13,7 @@ from shapely.geometry import Polygon
 from floorplans.importers.assembly.openings import attach_openings, close_gaps
 from floorplans.importers.assembly.outline import Link, Storey, find_outline, settled
 from floorplans.importers.draft import Draft, ImportOptions, Origin, RawOpening
+from floorplans.importers.progress import Report, Step
 from floorplans.repair.geometry import DECIMALS, Change, tidy_point
 from floorplans.repair.walls import REACH_M, repair_walls
 from floorplans.walls import TOLERANCE_M, Point, Wall
@@ -56,7 +57,11 @@ class Building:
 
 
 def buildings(
-    draft: Draft, walls: Sequence[Wall], options: ImportOptions, height_m: float
+    draft: Draft,
+    walls: Sequence[Wall],
+    options: ImportOptions,
+    height_m: float,
+    report: Report,
 ) -> Iterator[Building]:
     """Yield what a draft may be, the most faithful first.
 
@@ -71,20 +76,27 @@ def buildings(
     options : ImportOptions
     height_m : float
         Of the ceiling [m].
+    report : callable
+        Called with finished steps.
     """
     openings = sorted(draft.openings, key=lambda opening: _ORDER[opening.kind])
     reach_m = options.tolerance_m or REACH_M
     repaired = repair_walls(close_gaps(walls, openings), reach_m, THICKNESS_FRACTION)
-    found = find_outline(repaired.walls, draft.outline, height_m, options.close_gaps_m)
+    report(Step.WALLS_REPAIRED)
+    found = find_outline(repaired.walls, draft.outline, height_m, options.close_gaps_m, report)
+    report(Step.OUTLINE_FOUND)
     for settling_m in _SETTLING_M:
         storey = settled(found, draft.outline, height_m, settling_m)
+        report(Step.WALLS_SETTLED)
         if storey is not None:
             changes = (*repaired.changes, *storey.changes, *_closed_by_reader(draft))
             closed_m = sum(line.length for line in draft.closed) + sum(
                 dist(c.at, c.to) for c in storey.changes if c.kind == "closed" and c.to
             )
             storey = replace(storey, changes=changes)
-            yield _with_openings(storey, openings, draft.origin, closed_m)
+            building = _with_openings(storey, openings, draft.origin, closed_m)
+            report(Step.OPENINGS_ATTACHED)
+            yield building
 
 
 def _closed_by_reader(draft: Draft) -> Iterator[Change]:

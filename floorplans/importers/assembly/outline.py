@@ -14,8 +14,16 @@ from shapely.geometry import MultiPoint, Polygon
 
 from floorplans.errors import PlanError
 from floorplans.importers.assembly.outline_gaps import gap_links, link_lengths
-from floorplans.importers.assembly.wall_network import ON_EDGE_M, Lines, Network, not_within
+from floorplans.importers.assembly.recesses import without_recesses
+from floorplans.importers.assembly.wall_network import (
+    ON_EDGE_M,
+    Lines,
+    Network,
+    middles,
+    not_within,
+)
 from floorplans.importers.defaults import CLOSED_GAP_M
+from floorplans.importers.progress import Report, Step, no_report
 from floorplans.repair.geometry import Change
 from floorplans.repair.walls import repair_walls, split_at_junctions
 from floorplans.walls import TOLERANCE_M, Wall, centre_lines
@@ -64,7 +72,11 @@ class _Region:
 
 
 def find_outline(
-    walls: Sequence[Wall], given: Polygon | None, height_m: float, max_gap_m: float | None = None
+    walls: Sequence[Wall],
+    given: Polygon | None,
+    height_m: float,
+    max_gap_m: float | None = None,
+    report: Report = no_report,
 ) -> Storey:
     """Find the outline that walls enclose; close gaps where necessary, drop walls outside.
 
@@ -83,6 +95,8 @@ def find_outline(
         Of the ceiling; walls on the outline are raised to it [m].
     max_gap_m : float or None
         Wider gaps stay open; None is `CLOSED_GAP_M` [m].
+    report : callable
+        Called with finished steps.
 
     Returns
     -------
@@ -90,7 +104,9 @@ def find_outline(
     """
     pieces = split_at_junctions(walls)
     limit_m = CLOSED_GAP_M if max_gap_m is None else max_gap_m
-    region = _enclosed_region(centre_lines(pieces), given, limit_m, max_gap_m is not None)
+    network = Network(centre_lines(pieces))
+    report(Step.WALLS_SPLIT)
+    region = _enclosed_region(network, given, limit_m, max_gap_m is not None)
     short = [gap for gap in region.gaps if dist(*gap) <= limit_m]
     changes = [
         Change("closed", f"gap of {dist(a, b):.2f} m in the outline closed", a, b) for a, b in short
@@ -113,7 +129,7 @@ def outline_of(walls: Sequence[Wall], given: Polygon | None) -> Polygon | None:
         As in `find_outline`.
     """
     network = Network(centre_lines(split_at_junctions(walls)))
-    region = _largest_face(network, np.empty((0, 2, 2)), given)
+    region = _largest_face(network, given)
     return None if region is None else _simplified(region)
 
 
@@ -125,15 +141,15 @@ def on_edge(walls: Sequence[Wall], outline: Polygon) -> NDArray[np.bool_]:
 
 
 def _enclosed_region(
-    lines: Lines, given: Polygon | None, limit_m: float, is_strict: bool
+    network: Network, given: Polygon | None, limit_m: float, is_strict: bool
 ) -> _Region:
     """Region that gaps up to a limit close, or one with wider gaps where that is no building.
 
     Under a strict limit a building is open where the default limit would enclose more of it;
     otherwise only where hardly any of the walls are enclosed, in whatever number of buildings.
     """
-    network = Network(lines)
-    closed = _region(lines, network, np.empty((0, 2, 2)), given)
+    lines = network.lines
+    closed = _region(lines, network, given)
     if closed and closed.enclosed > 1 - _ENOUGH:
         return closed
     outer = network if closed is None or given is not None else network.around(closed.polygon)
@@ -162,7 +178,9 @@ def _best_region(
     """Region with most of the walls for the least width of gaps; None if there is none."""
     best: _Region | None = None
     for gap_m in [*(width for width in _GAPS_M if width < limit_m), limit_m]:
-        region = _region(lines, outer, links[link_lengths(links) <= gap_m], given)
+        is_short = link_lengths(links) <= gap_m
+        outer, links = outer.with_links(links[is_short]), links[~is_short]
+        region = _region(lines, outer, given)
         if region and given is None:
             outer = outer.around(region.polygon)
             links = shapely.get_coordinates(
@@ -175,15 +193,14 @@ def _best_region(
     return best
 
 
-def _region(
-    lines: Lines, outer: Network, links: NDArray[np.float64], given: Polygon | None
-) -> _Region | None:
-    """Region that the outer lines and links enclose, and how much of all lines it holds."""
-    polygon = _largest_face(outer, links, given)
+def _region(lines: Lines, outer: Network, given: Polygon | None) -> _Region | None:
+    """Region that an outer network encloses, and how much of all lines it holds."""
+    polygon = _largest_face(outer, given)
     if polygon is None:
         return None
     if given is None:
-        polygon = _without_recesses(polygon, outer)
+        gaps = np.array(_open_sections(polygon, outer.lines))
+        polygon = without_recesses(polygon, gaps, outer)
     enclosed = _length_inside(lines, polygon) / float(shapely.length(lines).sum())
     return _Region(_simplified(polygon), tuple(_open_sections(polygon, outer.lines)), enclosed)
 
@@ -199,7 +216,8 @@ def _is_closed(network: Network, links: NDArray[np.float64], region: _Region) ->
     """Whether most of the walls outside a region are part of other closed buildings."""
     lines = network.lines
     widths_m = [dist(*gap) for gap in region.gaps]
-    faces = network.faces(links[link_lengths(links) <= max(widths_m, default=0.0)])
+    used = links[link_lengths(links) <= max(widths_m, default=0.0)]
+    faces = network.with_links(used).faces()
     wide = shapely.coverage_union_all(faces).buffer(ON_EDGE_M)
     shapely.prepare(wide)
     lengths_m = shapely.length(lines)
@@ -235,16 +253,15 @@ def _open_sections(region: Polygon, lines: Lines) -> list[Link]:
         for ring in (region.exterior, *region.interiors)
         for a, b in pairwise(ring.coords)
     ]
-    walls = shapely.STRtree(lines).query(_middles(sides), "dwithin", distance=TOLERANCE_M)[0]
+    halfway = middles(np.array(shapely.linestrings(sides), dtype=np.object_))
+    walls = shapely.STRtree(lines).query(halfway, "dwithin", distance=TOLERANCE_M)[0]
     covered = set(walls.tolist())
     return [side for i, side in enumerate(sides) if i not in covered]
 
 
-def _largest_face(
-    network: Network, links: NDArray[np.float64], given: Polygon | None
-) -> Polygon | None:
-    """Largest connected region that lines and links enclose; None if there is none."""
-    faces = network.faces(links)
+def _largest_face(network: Network, given: Polygon | None) -> Polygon | None:
+    """Largest connected region that a network encloses; None if there is none."""
+    faces = network.faces()
     if given is not None:
         covered = shapely.area(shapely.intersection(faces, given))
         faces = faces[covered > 0.5 * shapely.area(faces)]
@@ -257,35 +274,6 @@ def _largest_face(
         return None
     holes = list(largest.interiors) if given is not None else []
     return Polygon(largest.exterior, holes)
-
-
-def _without_recesses(region: Polygon, network: Network) -> Polygon:
-    """Region without the parts behind a gap that hold no wall of their own, such as a niche.
-
-    A part stays that connects others, such as a corridor that is open at its ends.
-    """
-    gaps = _open_sections(region, network.lines)
-    if not gaps:
-        return region
-    faces = network.faces(np.array(gaps))
-    inner = region.buffer(ON_EDGE_M)
-    shapely.prepare(inner)
-    faces = faces[shapely.covers(inner, faces)]
-    behind = shapely.STRtree(faces).query(_middles(gaps), "dwithin", distance=TOLERANCE_M)[1]
-    kept = np.ones(len(faces), dtype=np.bool_)
-    for k in dict.fromkeys(behind.tolist()):
-        others = faces[kept & (np.arange(len(faces)) != k)]
-        if network.is_edged(faces.item(k), others):
-            kept[k] = False
-            rest = shapely.coverage_union_all(faces[kept])
-            kept[k] = not isinstance(rest, Polygon)
-    rest = shapely.coverage_union_all(faces[kept])
-    return Polygon(rest.exterior) if isinstance(rest, Polygon) and not kept.all() else region
-
-
-def _middles(sections: Sequence[Link]) -> Lines:
-    lines = shapely.linestrings(sections)
-    return np.array(shapely.line_interpolate_point(lines, 0.5, normalized=True), dtype=np.object_)
 
 
 def _length_inside(lines: Lines, region: Polygon) -> float:

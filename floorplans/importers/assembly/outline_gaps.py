@@ -56,8 +56,8 @@ def gap_links(lines: Lines, max_gap_m: float) -> Segments:
         [
             _to_ends(ends, max_gap_m),
             _to_walls(owner, ends, lines, tree, max_gap_m),
-            _straight_ahead(owner, ends, ahead * max_gap_m, lines, tree),
-            _straight_ahead(at_corner, corners, along * max_gap_m, lines, tree),
+            _straight_ahead(owner, ends, ahead, lines, tree, max_gap_m),
+            _straight_ahead(at_corner, corners, along, lines, tree, max_gap_m),
             _between_groups(lines, tree, max_gap_m),
         ]
     )
@@ -139,10 +139,39 @@ def _straight_ahead(
     ahead: NDArray[np.float64],
     lines: Lines,
     tree: shapely.STRtree,
+    max_gap_m: float,
 ) -> Segments:
     """Link from the end of each wall straight ahead to the first wall beyond."""
-    beyond = ends + _BEYOND * ahead
-    rays = np.array(shapely.linestrings(np.stack([beyond, ends + ahead], axis=1)), dtype=np.object_)
+    links = [np.empty((0, 2, 2))]
+    todo = np.arange(len(ends))
+    done = [todo[:0]]
+    for radius_m in _radii(max_gap_m):
+        hit, found = _first_ahead(
+            owner[todo], ends[todo], ahead[todo], lines, tree, (radius_m, _BEYOND * max_gap_m)
+        )
+        links.append(found)
+        done.append(todo[hit])
+        todo = np.delete(todo, hit)
+    return np.concatenate(links)[np.argsort(np.concatenate(done))]
+
+
+def _first_ahead(
+    owner: NDArray[np.int64],
+    ends: NDArray[np.float64],
+    ahead: NDArray[np.float64],
+    lines: Lines,
+    tree: shapely.STRtree,
+    reach: tuple[float, float],
+) -> tuple[NDArray[np.int64], Segments]:
+    """Which ends have a wall ahead within a distance, and the links to the first.
+
+    The distance and how far beyond an end the search begins are `reach` [m].
+    """
+    radius_m, skipped_m = reach
+    beyond = ends + skipped_m * ahead
+    rays = np.array(
+        shapely.linestrings(np.stack([beyond, ends + radius_m * ahead], axis=1)), dtype=np.object_
+    )
     which, wall = tree.query(rays, "intersects")
     other = wall != owner[which]
     which, wall = which[other], wall[other]
@@ -155,7 +184,7 @@ def _straight_ahead(
     best = _first_of_each(which, shapely.length(shortest))
     links = shapely.get_coordinates(shortest[best]).reshape(-1, 2, 2)
     links[:, 0] = ends[which[best]]
-    return links
+    return which[best], links
 
 
 def _corners(

@@ -46,6 +46,7 @@ from floorplans.importers.dxf.openings import (
     openings_of_symbol,
 )
 from floorplans.importers.layer_names import unmatched
+from floorplans.importers.progress import Report, Step, no_report
 from floorplans.importers.tangle import check_crossings
 from floorplans.importers.units import UNITS, check_size, guess_unit, unit_length
 
@@ -80,7 +81,7 @@ class _Bodies:
     singles: tuple[tuple[LineString, Material], ...]
 
 
-def read_dxf(path: Path, options: ImportOptions) -> Draft:
+def read_dxf(path: Path, options: ImportOptions, report: Report = no_report) -> Draft:
     """Read a DXF drawing of one storey.
 
     Parameters
@@ -88,6 +89,8 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
     path : Path
     options : ImportOptions
         `unit`, `layers` and `tolerance_m` (of chords) are used.
+    report : callable
+        Called with finished steps.
 
     Returns
     -------
@@ -99,13 +102,14 @@ def read_dxf(path: Path, options: ImportOptions) -> Draft:
         When the file is damaged or too large, holds no walls, or its unit is unknown.
     """
     document = load_document(path)
+    report(Step.FILE_LOADED)
     unit, stated_by = _unit(document, options)
     tolerance = (options.tolerance_m or CHORD_M) / UNITS[unit]
     content = read_content(document, options.layers, tolerance)
     layers = layers_of(content, options.layers)
     check_size(_size(content, layers), unit, stated_by)
     metric = _with_doors_of_swings(_in_metres(content, UNITS[unit]), layers)
-    walls, openings = _building(metric, layers)
+    walls, openings = _building(metric, layers, report)
     return Draft(
         name=path.stem,
         walls=tuple(walls),
@@ -174,9 +178,12 @@ def _with_doors_of_swings(content: Content, layers: Layers) -> Content:
     return content
 
 
-def _building(content: Content, layers: Layers) -> tuple[list[RawWall], list[RawOpening]]:
+def _building(
+    content: Content, layers: Layers, report: Report
+) -> tuple[list[RawWall], list[RawOpening]]:
     """Walls and openings of a drawing in metres."""
     bodies = _bodies(content, layers)
+    report(Step.FACES_PAIRED)
     area = shapely.union_all(list(bodies.area.values()))
     ground = shapely.union_all(
         [area, *(line for line, _ in bodies.singles), *_panes(content, layers)]

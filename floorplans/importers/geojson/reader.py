@@ -25,6 +25,7 @@ from floorplans.importers.geojson.levels import on_level
 from floorplans.importers.geojson.walls import Placed, openings_of, walls_of
 from floorplans.importers.layer_names import is_horizontal_opening, unmatched
 from floorplans.importers.original import DrawnLayer, Original
+from floorplans.importers.progress import Report, Step, no_report
 from floorplans.plan import FloorPlan
 
 TOLERANCE_M = 0.05
@@ -33,7 +34,9 @@ _USE = {True: "used", False: "left out"}
 _USED: tuple[Kind, ...] = ("wall", "door", "window", "passage", "room", "outline")
 
 
-def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
+def read_geojson(
+    path: Path, options: ImportOptions, report: Report = no_report
+) -> Draft | FloorPlan:
     """Read a GeoJSON file, or an IMDF venue in a folder or archive.
 
     Parameters
@@ -41,6 +44,8 @@ def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
     path : Path
     options : ImportOptions
         `level`, `unit`, `tolerance_m` and `layers` are used.
+    report : callable
+        Called with finished steps.
 
     Returns
     -------
@@ -53,6 +58,7 @@ def read_geojson(path: Path, options: ImportOptions) -> Draft | FloorPlan:
         When the file cannot be read, or describes no building.
     """
     collection = read_collection(path)
+    report(Step.FILE_LOADED)
     if is_plan(collection.document):
         return plan_from_geojson(collection.document, origin=str(path))
     classes = [classify(feature, options) for feature in collection.features]

@@ -32,6 +32,7 @@ from floorplans.importers.ifc.shapes import Body, Scale, bodies
 from floorplans.importers.ifc.walls import ReadWall, read_filling, read_wall
 from floorplans.importers.layer_names import unmatched
 from floorplans.importers.original import DrawnLayer, Original
+from floorplans.importers.progress import Report, Step, no_report
 from floorplans.values import MAX_WALLS
 
 _DAMAGED = (
@@ -48,7 +49,7 @@ _TO_CEILING_M = 0.35
 """A wall that ends at most this below the ceiling reaches it: slabs have a thickness [m]."""
 
 
-def read_ifc(path: Path, options: ImportOptions) -> Draft:
+def read_ifc(path: Path, options: ImportOptions, report: Report = no_report) -> Draft:
     """Read one storey of an IFC model.
 
     Parameters
@@ -57,6 +58,8 @@ def read_ifc(path: Path, options: ImportOptions) -> Draft:
     options : ImportOptions
         `level` is the storey's name, its number from below, or its elevation [m] with a point;
         `layers` maps names of materials.
+    report : callable
+        Called with finished steps.
 
     Returns
     -------
@@ -68,6 +71,7 @@ def read_ifc(path: Path, options: ImportOptions) -> Draft:
         When the file cannot be read, or the choice of the storey is ambiguous.
     """
     model = open_model(path)
+    report(Step.FILE_LOADED)
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore", DeprecationWarning)  # the library's own

@@ -26,6 +26,7 @@ from floorplans.importers.centrelines.areas import block_walls, box_sides
 from floorplans.importers.draft import Draft, ImportOptions, LayerUse, RawWall, walls_along
 from floorplans.importers.known_pixels import KnownPixels
 from floorplans.importers.original import Affine, DrawnPicture, Original
+from floorplans.importers.progress import Report, Step, no_report
 from floorplans.importers.ros_map.bridging import bridged
 from floorplans.importers.ros_map.known_space import known_region, openings_in_border
 from floorplans.importers.ros_map.occupancy_grid import MapMetadata, Mask, OccupancyGrid, read_grid
@@ -44,6 +45,7 @@ _PILLAR_M, _PILLAR_PX = 0.2, 4.0  # least width of a pillar, which is no wall ho
 _SQUAT = 0.35  # width over length above which an isolated object is an obstacle, not a wall
 _FILLED, _SMALL_M = 0.6, 0.4  # least filled fraction of an obstacle's hull, from a length on [m]
 _BOXY = 0.9  # fraction of the box around it that a box-shaped obstacle fills
+_UNSTEADY = 0.4  # fraction of neighbouring pixels of different kinds that is noise
 _MANY_PIECES, _PIECES_PER_M = 50, 2.0  # isolated pieces, also per metre of wall, that are noise
 _MOST_MEASURED = 200_000  # pixels that the plan is compared with
 _EVERYWHERE = np.ones((3, 3), dtype=np.bool_)
@@ -60,7 +62,7 @@ class _Sorted:
     n_specks: int
 
 
-def read_ros_map(path: Path, options: ImportOptions) -> Draft:
+def read_ros_map(path: Path, options: ImportOptions, report: Report = no_report) -> Draft:
     """Read a YAML file with its picture, or a picture.
 
     Parameters
@@ -68,6 +70,8 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
     path : Path
     options : ImportOptions
         `scale_m` and `tolerance_m` are used.
+    report : callable
+        Called with finished steps.
 
     Returns
     -------
@@ -79,8 +83,10 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
         When a file cannot be read, or contains no wall.
     """
     grid = read_grid(path, options.scale_m)
+    report(Step.FILE_LOADED)
     pixel_m = grid.metadata.resolution_m
     _check_extent(grid.occupied, pixel_m)
+    _check_steady(grid)
     tolerance_px = options.tolerance_m / pixel_m if options.tolerance_m else TOLERANCE_PX
     sorted_ = _sort(grid, pixel_m)
     walls = walls_of_picture(sorted_.walls, tolerance_px)
@@ -107,6 +113,18 @@ def read_ros_map(path: Path, options: ImportOptions) -> Draft:
         known=_known_pixels(grid, region is not None),
         original=Original(picture=_picture(grid)),
     )
+
+
+def _check_steady(grid: OccupancyGrid) -> None:
+    """Reject a picture whose pixels mostly differ from their neighbours."""
+    kind = grid.occupied.astype(np.int8) + 2 * grid.free
+    changes = [np.diff(kind, axis=axis) != 0 for axis in (0, 1)]
+    differ = sum(map(np.count_nonzero, changes)) / max(1, sum(change.size for change in changes))
+    if differ > _UNSTEADY:
+        raise PlanError(
+            f"{100 * differ:.0f} % of the map's pixels differ from the one beside them (occupied, "
+            "free or unknown): noise; clean the picture, or look at its thresholds"
+        )
 
 
 def _check_noise(grid: OccupancyGrid, sorted_: _Sorted, walls: list[RawWall]) -> None:

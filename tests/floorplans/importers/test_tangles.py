@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from floorplans import PlanError
 from floorplans.importers.assembly.outline import find_outline
 from floorplans.importers.assembly.outline_gaps import gap_links, link_lengths
+from floorplans.importers.assembly.wall_network import Network
 from floorplans.importers.tangle import MAX_CROSSINGS, check_crossings
 from floorplans.repair.geometry import along_across, line_crossing, points_on_walls
 from floorplans.repair.walls import split_at_junctions
@@ -94,6 +95,32 @@ def test_a_group_of_walls_is_linked_to_the_nearest_wall_of_another(seed: int):
         if 1e-3 < apart_m < MAX_GAP_M:
             assert leaving.size
             assert abs(leaving.min() - apart_m) < 1e-3
+
+
+@settings(max_examples=15, deadline=None)
+@given(seed=seeds)
+def test_what_walls_and_links_enclose_does_not_depend_on_how_many_are_added_at_once(seed: int):
+    lines = centre_lines(split_at_junctions(walls_of(segments(seed, 120, 20.0, 4.0))))
+    links = gap_links(lines, MAX_GAP_M)
+    at_once = Network(lines).with_links(links)
+    staged = Network(lines)
+    lengths = link_lengths(links)
+    for low_m, high_m in pairwise((0.0, 0.5, 1.0, 2.0, MAX_GAP_M)):
+        staged = staged.with_links(links[(lengths > low_m) & (lengths <= high_m)])
+    areas = [shapely.area(network.faces()).sum() for network in (at_once, staged)]
+    assert areas[0] == pytest.approx(areas[1], abs=1e-6)
+
+
+@settings(max_examples=15, deadline=None)
+@given(seed=seeds)
+def test_a_region_stays_closed_when_what_it_holds_is_left_out(seed: int):
+    lines = centre_lines(split_at_junctions(walls_of(segments(seed, 120, 20.0, 4.0))))
+    network = Network(lines).with_links(gap_links(lines, MAX_GAP_M))
+    parts = shapely.get_parts(shapely.coverage_union_all(network.faces()))
+    largest = max(parts, key=lambda part: part.area)
+    around = network.around(shapely.Polygon(largest.exterior))
+    areas = shapely.area(shapely.get_parts(shapely.coverage_union_all(around.faces())))
+    assert areas.max() == pytest.approx(shapely.Polygon(largest.exterior).area, abs=1e-6)
 
 
 @settings(max_examples=30, deadline=None)
