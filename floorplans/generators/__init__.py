@@ -5,6 +5,24 @@ follow walls, doors and windows (`building`), furniture (`furniture`), and trans
 start (`places`). `regular_office` has offices of equal rooms, without a seed, for measurements.
 """
 
-from floorplans.generators.generate import KINDS, LARGEST_M2, LEAST_M2, Kind, generate
+from floorplans.generators.generate import (
+    GENERATOR_VERSION,
+    KINDS,
+    LARGEST_M2,
+    LEAST_M2,
+    SHAPES,
+    Kind,
+    generate,
+)
+from floorplans.generators.layouts import Shape
 
-__all__ = ["KINDS", "LARGEST_M2", "LEAST_M2", "Kind", "generate"]
+__all__ = [
+    "GENERATOR_VERSION",
+    "KINDS",
+    "LARGEST_M2",
+    "LEAST_M2",
+    "SHAPES",
+    "Kind",
+    "Shape",
+    "generate",
+]

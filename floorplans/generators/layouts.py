@@ -10,12 +10,16 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 
 from floorplans.generators.rooms import Room, Use, divided
 
 Rng = np.random.Generator
+
+Shape = Literal["rectangle", "L"]
+"""Of a building: a rectangle, or with a wing."""
 
 
 @dataclass(frozen=True)
@@ -50,47 +54,66 @@ def rectangle(rng: Rng, area_m2: float, depth: tuple[int, int]) -> tuple[int, in
     return 10 * round(1e3 * area_m2 / y), y
 
 
-def office(rng: Rng, area_m2: float) -> list[Room]:
+def office(rng: Rng, area_m2: float, shape: Shape) -> list[Room]:
     """Blocks of offices, some of them open, with meeting rooms, stores and a core."""
-    return list(_in_blocks(rng, area_m2, OFFICE, _office_row))
+    return _in_blocks(rng, area_m2, shape, OFFICE, _office_row)
 
 
-def hotel(rng: Rng, area_m2: float) -> list[Room]:
+def hotel(rng: Rng, area_m2: float, shape: Shape) -> list[Room]:
     """Blocks of guest rooms, each with a bath beside its door; also a ward."""
-    return list(_in_blocks(rng, area_m2, HOTEL, _guest_row))
+    return _in_blocks(rng, area_m2, shape, HOTEL, _guest_row)
 
 
-def school(rng: Rng, area_m2: float) -> list[Room]:
+def school(rng: Rng, area_m2: float, shape: Shape) -> list[Room]:
     """Blocks of classrooms with stores between them."""
-    return list(_in_blocks(rng, area_m2, SCHOOL, _class_row))
+    return _in_blocks(rng, area_m2, shape, SCHOOL, _class_row)
 
 
 Row = Callable[[Rng, Room, bool, Rows], Iterator[Room]]
 """Divides the row of rooms beside a corridor; the flag says whether the corridor is above it."""
 
 
-def _in_blocks(rng: Rng, area_m2: float, rows: Rows, row: Row) -> Iterator[Room]:
-    """Stack blocks of row, corridor, row, and join their corridors by one across."""
+def _in_blocks(rng: Rng, area_m2: float, shape: Shape, rows: Rows, row: Row) -> list[Room]:
+    """Stack blocks of row, corridor, row, and join their corridors by one across.
+
+    In a building with a wing the upper blocks are shorter than the others.
+    """
     depth, corridor = (_within(rng, limits) for limits in (rows.depth, rows.corridor))
     pitch = 2 * depth + corridor
     n_blocks = max(1, round(math.sqrt(area_m2 * 1e4 / 2.2) / pitch))
     while n_blocks > 1 and area_m2 * 1e4 / (n_blocks * pitch) < 2 * rows.width[1]:
         n_blocks -= 1
-    width = 10 * round(area_m2 * 1e3 / (n_blocks * pitch))
+    wing, n_long = 1.0, n_blocks
+    if shape == "L":
+        n_blocks = max(2, n_blocks)
+        wing, n_long = float(rng.uniform(0.35, 0.6)), (n_blocks + 1) // 2
+    in_lengths = n_long + wing * (n_blocks - n_long)
+    width = 10 * round(area_m2 * 1e3 / (in_lengths * pitch))
     across = _within(rng, rows.corridor) if n_blocks > 1 else 0
     left = 10 * int(rng.integers(0, max(width - across, 0) // 20 + 1)) if across else 0
     left = 0 if left < 2 * rows.width[0] else left
-    if across:
-        yield Room((left, 0), (left + across, n_blocks * pitch), "corridor")
-    parts = [(low, high) for low, high in ((0, left), (left + across, width)) if high > low]
+    rooms = [Room((left, 0), (left + across, n_blocks * pitch), "corridor")] if across else []
     for block in range(n_blocks):
-        bottom = block * pitch
+        end = width
+        if block >= n_long:
+            end = min(max(10 * round(wing * width / 10), left + across + rows.width[1]), width)
+        parts = [(low, high) for low, high in ((0, left), (left + across, end)) if high > low]
         for low, high in parts:
-            first = Room((low, bottom), (high, bottom + depth), "office")
-            second = Room((low, bottom + depth + corridor), (high, bottom + pitch), "office")
-            yield from row(rng, first, True, rows)
-            yield Room((low, first.high[1]), (high, second.low[1]), "corridor")
-            yield from row(rng, second, False, rows)
+            rooms += _block(rng, (low, high), (block * pitch, depth, corridor), rows, row)
+    return rooms
+
+
+def _block(
+    rng: Rng, along: tuple[int, int], across: tuple[int, int, int], rows: Rows, row: Row
+) -> Iterator[Room]:
+    """Lay out a corridor between two rows, from its lower edge up: depths [cm]."""
+    (low, high), (bottom, depth, corridor) = along, across
+    middle = bottom + depth
+    first = Room((low, bottom), (high, middle), "office")
+    second = Room((low, middle + corridor), (high, middle + corridor + depth), "office")
+    yield from row(rng, first, True, rows)
+    yield Room((low, middle), (high, middle + corridor), "corridor")
+    yield from row(rng, second, False, rows)
 
 
 def _office_row(rng: Rng, strip: Room, above: bool, rows: Rows) -> Iterator[Room]:
@@ -143,9 +166,12 @@ def _cells(rng: Rng, strip: Room, widths: tuple[int, int]) -> list[Room]:
     return [*rooms, strip]
 
 
-def flat(rng: Rng, area_m2: float) -> list[Room]:
-    """One corridor, living room and kitchen on one side, bedrooms and bath on the other."""
-    width, depth = rectangle(rng, area_m2, (700, 1100))
+def flat(rng: Rng, area_m2: float, shape: Shape) -> list[Room]:
+    """One corridor, living room and kitchen on one side, bedrooms and bath on the other.
+
+    With a wing, the side of the bedrooms is shorter.
+    """
+    width, depth = rectangle(rng, area_m2 if shape == "rectangle" else 1.15 * area_m2, (700, 1100))
     corridor = _within(rng, (110, 160))
     bottom = 10 * round((depth - corridor) * float(rng.uniform(0.42, 0.58)) / 10)
     south = Room((0, 0), (width, bottom), "living")
@@ -158,14 +184,26 @@ def flat(rng: Rng, area_m2: float) -> list[Room]:
         living, study = living.cut(0, living.high[0] - _within(rng, (280, 380)))
         rooms.append(study.of("bedroom"))
     rooms.append(living)
+    if shape == "L":
+        north, _ = north.cut(0, 10 * round(width * float(rng.uniform(0.6, 0.75)) / 10))
     bath, bedrooms = north.cut(0, north.low[0] + _within(rng, (180, 260)))
     rooms.append(bath.of("bath"))
     return rooms + [cell.of("bedroom") for cell in _cells(rng, bedrooms, (280, 480))]
 
 
-def hall(rng: Rng, area_m2: float) -> list[Room]:
-    """One large room; at its end a row of offices and stores of one storey's height."""
-    width, depth = rectangle(rng, area_m2, (1200, 6000))
+def hall(rng: Rng, area_m2: float, shape: Shape) -> list[Room]:
+    """One large room; at its end a row of offices and stores of one storey's height.
+
+    With a wing, a second part of the room stands across the first.
+    """
+    width, depth = rectangle(rng, area_m2 if shape == "rectangle" else area_m2 / 1.4, (1200, 6000))
+    if shape == "L":
+        x = 10 * round(width * float(rng.uniform(0.35, 0.6)) / 10)
+        y = depth + 10 * round(0.4 * width * depth / x / 10)
+        return [
+            Room((0, 0), (width, depth), "hall", 1),
+            Room((0, depth), (x, y), "hall", 1),
+        ]
     end = _within(rng, (400, 700))
     if end * 3 > width:
         return [Room((0, 0), (width, depth), "hall")]

@@ -95,4 +95,14 @@ def _free_points(rooms: Sequence[Room], walls: Sequence[Wall]) -> Ints:
     points = 2 * np.column_stack([x.ravel(), y.ravel()]) + 1
     tree = shapely.STRtree(centre_lines(walls))
     near, _ = tree.query(shapely.points(points / 2), predicate="dwithin", distance=CLEAR_M)
-    return np.delete(points, np.unique(near), axis=0)
+    outside = np.flatnonzero(~_in_rooms(50 * points, rooms))
+    return np.delete(points, np.union1d(near, outside), axis=0)
+
+
+def _in_rooms(points: Ints, rooms: Sequence[Room]) -> NDArray[np.bool_]:
+    """Which points (n, 2) [cm] are in a room (n,)."""
+    low, high = (np.array([getattr(room, end) for room in rooms]) for end in ("low", "high"))
+    inside = np.zeros(len(points), dtype=np.bool_)
+    for lower, upper in zip(low, high, strict=True):
+        inside |= ((points >= lower) & (points <= upper)).all(axis=1)
+    return inside

@@ -9,7 +9,7 @@ import typer
 
 import floorplans
 from atomicfiles import atomic_write
-from floorplans.generators import LARGEST_M2, LEAST_M2, Kind
+from floorplans.generators import LARGEST_M2, LEAST_M2, SHAPES, Kind, Shape
 from rssnav.cli.console import say
 from rssnav.cli.options import Seed, check_suffix, examples
 
@@ -43,6 +43,9 @@ def generate_plan(
             show_default="drawn from what is usual for the kind",
         ),
     ] = None,
+    shape: Annotated[
+        Shape, typer.Option(metavar="SHAPE", help="rectangle, or L for a building with a wing.")
+    ] = SHAPES[0],
     access_points: Annotated[
         int,
         typer.Option(
@@ -65,9 +68,17 @@ def generate_plan(
     check_suffix(output, (".toml",), "--output")
     if output.exists() and not force:
         raise FileExistsError(17, "already exists; use --force to overwrite", str(output))
-    plan = floorplans.generate(
-        kind, seed, area_m2=area, furniture=furniture, n_transmitters=access_points
-    )
+    try:
+        plan = floorplans.generate(
+            kind,
+            seed,
+            area_m2=area,
+            furniture=furniture,
+            shape=shape,
+            n_transmitters=access_points,
+        )
+    except ValueError as error:  # a wing needs a larger area
+        raise typer.BadParameter(f"{error}.", param_hint="--area") from error
     with atomic_write(output) as beside:
         beside.write_text(floorplans.dumps(plan), encoding="utf-8", newline="\n")
     say(

@@ -14,6 +14,7 @@ import floorplans
 from floorplans import FloorPlan, generate
 from floorplans.checks.inspection import inspect
 from floorplans.generators import KINDS
+from floorplans.generators.generate import LEAST_WITH_WING_M2
 from floorplans.generators.rooms import Room, borders, divided
 from floorplans.unchecked import PlanFile
 
@@ -40,10 +41,31 @@ def test_plans_have_no_errors_and_no_warnings(kind: str, seed: int, area: float 
 
 
 @kinds
+@given(seed=st.integers(0, 2**63 - 1), times=st.sampled_from([1.0, 2.0]))
+@settings(max_examples=3)
+def test_buildings_with_a_wing_have_six_corners_and_no_warnings(
+    kind: str, seed: int, times: float
+) -> None:
+    area = times * LEAST_WITH_WING_M2[kind]
+    plan = generate(kind, seed, area_m2=area, shape="L")
+    assert inspect(PlanFile.of(plan)) == ()
+    assert len(plan.outline.exterior.coords) == 7
+    assert plan.outline.area == pytest.approx(area, rel=0.25)
+    assert not plan.outline.equals(plan.outline.envelope)
+
+
+def test_a_wing_needs_room() -> None:
+    with pytest.raises(ValueError, match=r"area_m2 = 100\.0: expected 450 m"):
+        generate("office", 1, area_m2=100.0, shape="L")
+    with pytest.raises(ValueError, match="shape = 'T': expected one of rectangle, L"):
+        generate("office", 1, shape="T")
+
+
+@kinds
 @pytest.mark.parametrize("seed", range(6))
 def test_every_room_can_be_reached_through_doors(kind: str, seed: int) -> None:
     """The floor without walls, but with the openings of doors, is one piece."""
-    plan = generate(kind, seed, furniture=False)
+    plan = generate(kind, seed, furniture=False, shape="L" if seed > 3 else "rectangle")
     solid = [segment for wall in plan.walls for segment in _between_doors(wall)]
     free = plan.outline.difference(shapely.union_all(shapely.linestrings(solid)).buffer(0.03))
     assert isinstance(free, shapely.Polygon)
