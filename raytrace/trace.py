@@ -4,6 +4,7 @@ import platform
 import time
 import warnings
 from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -340,5 +341,11 @@ def _provenance(scene: Scene, wall_time_s: float) -> dict[str, str | float | int
         "material_edition": scene.material_edition,
         "wall_time_s": wall_time_s,
         "python": platform.python_version(),
-        **{name: version(name) for name in ("rssnav", "numpy", "numba", "scipy", "trimesh")},
+        **_versions(),
     }
+
+
+@cache
+def _versions() -> dict[str, str]:
+    """Versions of the libraries; looked up once, which takes longer than a small map."""
+    return {name: version(name) for name in ("rssnav", "numpy", "numba", "scipy", "trimesh")}

@@ -16,7 +16,7 @@ OUTPUT_FILES = ("output", "picture", "report", "save_layers")
 OUTPUT_FOLDERS = ("out",)
 INPUTS = (
     "plan", "map_file", "trainings", "file", "layers", "survey", "transmitters", "antenna",
-    "receive_antenna",
+    "receive_antenna", "spec", "dataset",
 )  # fmt: skip
 """Names of the parameters that are files and folders."""
 

@@ -75,6 +75,10 @@ COMMANDS = {
         ("fly",),
         "Animate a trained UAV's flight: its path over the map, and its RSS readings.",
     ),
+    "dataset": Entry(
+        ("dataset",),
+        "Make, check and export data sets of radio maps.",
+    ),
     "explore": Entry(
         ("explore",),
         "Open the explorer in the browser: move the source, see its map, train a UAV.",

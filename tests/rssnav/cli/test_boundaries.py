@@ -23,12 +23,14 @@ GIVEN = {
     "output": "out",
     "survey": "survey.csv",
     "kind": "flat",
+    "spec": "spec.toml",
+    "dataset": "dataset",
 }
 SUFFIX = {
     "map": ".h5", "train": ".h5", "fly": ".gif", "plan new": ".toml", "plan generate": ".toml",
     "plan import": ".toml",
     "plan check": ".toml", "plan export": ".glb", "plan show": ".png", "validate": ".html",
-    "calibrate": ".toml",
+    "calibrate": ".toml", "dataset show": ".png",
 }  # fmt: skip
 NUMBERS = ("nan", "inf", "-inf", "1e308", "-1e308", "1e999", "9" * 30, "9" * 5000, "x", "")
 NO_TEXT = ("", "  ")

@@ -1,0 +1,1 @@
+"""Where plans are traced: threads of this process, or workers of a Dask cluster."""

@@ -1,0 +1,1 @@
+"""A data set in the layouts of other projects."""
