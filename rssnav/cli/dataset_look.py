@@ -20,13 +20,20 @@ MOST_SHOWN = 20
 
 def add_to(group: typer.Typer) -> None:
     """Add the commands to the group ``dataset``."""
-    group.command("check", epilog=examples("rssnav dataset make demo -o demo", "rssnav dataset check demo"))(check)
-    group.command("info", epilog=examples("rssnav dataset make demo -o demo", "rssnav dataset info demo --json"))(info)
-    group.command("show", epilog=examples("rssnav dataset make demo -o demo",
+    group.command(
+        "check", epilog=examples("rssnav dataset make demo -o demo", "rssnav dataset check demo")
+    )(check)
+    group.command(
+        "info",
+        epilog=examples("rssnav dataset make demo -o demo", "rssnav dataset info demo --json"),
+    )(info)
+    group.command(
+        "show",
+        epilog=examples(
+            "rssnav dataset make demo -o demo",
             "rssnav dataset show demo -o sheet.png --split test",
-        ))(
-        show
-    )
+        ),
+    )(show)
 
 
 def check(dataset: Folder, as_json: Json = False) -> None:

@@ -20,7 +20,7 @@ from raytrace.results.hdf5 import hdf5_bytes
 from raytrace.results.layers import LAYERS
 from rssnav.datasets.errors import DatasetError
 from rssnav.datasets.plan_maps import AXES, STORED, PlanMaps
-from rssnav.datasets.strongest import PATH_ARRAYS, path_shapes
+from rssnav.datasets.strongest import PATH_ARRAYS, PATH_DIMENSIONS, PATH_LABELS, path_shapes
 
 FORMAT = "rssnav data set plan"
 GZIP_LEVEL = 4
@@ -87,8 +87,10 @@ def _write(maps: PlanMaps, about: About, file: h5py.File) -> None:
     names = (*AXES, "y", "x")
     for name, layer in maps.layers.items():
         _array(file, name, layer, (LAYERS[name].units, LAYERS[name].long_name), names)
+    _write_path_scales(maps, file)
     for name, values in maps.paths.items():
-        _array(file, name, values, PATH_ARRAYS[name], names)
+        dimensions = PATH_DIMENSIONS.get(name, ("path",))
+        _array(file, name, values, PATH_ARRAYS[name], (*names, *dimensions))
     inside = maps.inside.astype(np.int8)
     words = "1", "1 where the cell's centre is in the building"
     _array(file, "inside", inside, words, (AXES[height], "y", "x"))
@@ -128,6 +130,20 @@ def _write_scales(maps: PlanMaps, file: h5py.File) -> None:
     ):
         scale = file.create_dataset(name, data=np.asarray(values, dtype=np.float64))
         scale.attrs.update(units=units, long_name=long_name)
+        scale.make_scale(name)
+
+
+def _write_path_scales(maps: PlanMaps, file: h5py.File) -> None:
+    """Write the scales of the dimensions of paths, if there are any."""
+    if not maps.paths:
+        return
+    n_paths, most = maps.paths["path_interactions"].shape[-2:]
+    for name, count in (("path", n_paths), ("interaction", most)):
+        scale = file.create_dataset(name, data=np.arange(count))
+        scale.attrs.update(units="1", long_name=f"number of the {name}")
+        scale.make_scale(name)
+    for name, labels in PATH_LABELS.items():
+        scale = file.create_dataset(name, data=list(labels), dtype=h5py.string_dtype())
         scale.make_scale(name)
 
 

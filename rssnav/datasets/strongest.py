@@ -23,6 +23,16 @@ PATH_ARRAYS: dict[str, tuple[str, str]] = {
 }
 """Arrays of paths by name: units and description."""
 
+PATH_DIMENSIONS = {
+    "path_departure_deg": ("path", "angle"),
+    "path_arrival_deg": ("path", "angle"),
+    "path_interactions": ("path", "interaction"),
+    "path_points": ("path", "interaction", "axis"),
+}
+"""Dimensions of the arrays of a cell; of all others ("path",)."""
+PATH_LABELS = {"angle": ("azimuth", "zenith"), "axis": ("x", "y", "z")}
+"""Names along dimensions; numbers along all others."""
+
 
 def path_shapes(count: int, most: int) -> dict[str, tuple[tuple[int, ...], type[np.generic]]]:
     """Return the shape of each array for one cell, and its type.

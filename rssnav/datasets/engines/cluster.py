@@ -13,6 +13,7 @@ import warnings
 from collections import deque
 from collections.abc import Generator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
@@ -87,7 +88,7 @@ class Cluster:
                     on_worker, source, job.configuration, job.folder, key,
                     self._max_memory_bytes, key=f"rssnav-{key}", pure=False,
                 )  # fmt: skip
-                future.add_done_callback(lambda _, key=key: done.put(key))
+                future.add_done_callback(partial(_put, done, key))
                 running[key] = source, future
             job.traced(0)
             try:
@@ -150,6 +151,11 @@ def on_worker(
         return Summary(source.name, key, failure=f"{type(error).__name__}: {error}", is_final=False)
 
 
+def _put(done: SimpleQueue[str], key: str, _future: Any) -> None:
+    """Note that a task has ended."""
+    done.put(key)
+
+
 def _warming(configuration: Configuration) -> Any:
     """Return a plug-in that compiles the kernels of a worker, or loads them, before its tasks."""
     from distributed import WorkerPlugin
@@ -185,18 +191,18 @@ def _connected(scheduler: str) -> Generator[Any]:
 
 @contextmanager
 def _local_cluster(workers: int) -> Generator[Any]:
-    import dask
+    from dask import config
     from distributed import Client, LocalCluster
 
     environment = "distributed.nanny.pre-spawn-environ"
-    found = dask.config.get(environment, default={})
+    found = config.get(environment, default={})
     with (
-        dask.config.set({environment: {**found, **ONE_THREAD}}),
+        config.set({environment: {**found, **ONE_THREAD}}),
         LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
             processes=True,
-            dashboard_address=None,
+            dashboard_address=None,  # pyright: ignore[reportArgumentType]
             silence_logs=logging.CRITICAL,
         ) as cluster,
         _closing(Client(cluster, set_as_default=False)) as client,
