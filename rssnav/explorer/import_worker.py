@@ -79,8 +79,9 @@ def read_session(path: Path, limits: Limits) -> str:
             f"{limits.session_bytes}",
             origin=path.name,
         )
+    text = path.read_text(encoding="utf-8")
     try:
-        saved = SavedSession.loads(path.read_text(encoding="utf-8"))
+        saved = SavedSession.loads(text)
     except ValueError as error:
         raise PlanError(" ".join(str(error).split()), origin=path.name) from error
     Path(SAVED).write_text(replace(saved, plan="").dumps(), encoding="utf-8")

@@ -23,6 +23,8 @@ class Limits:
         Maximum number of tabs that compute at the same time.
     message_bytes : int
         Maximum size of a message from the browser other than an upload [bytes].
+    events : int
+        Maximum number of changes and events in a message.
     upload_bytes, plan_bytes : int
         Maximum sizes of an uploaded file, and of the TOML text of its plan [bytes].
     survey_bytes : int
@@ -53,6 +55,7 @@ class Limits:
     pages: int = 200
     jobs: int = max(2, n_threads())
     message_bytes: int = 64_000
+    events: int = 100
     upload_bytes: int = 8_000_000
     plan_bytes: int = 2_000_000
     survey_bytes: int = 1_000_000

@@ -28,7 +28,7 @@ from rssnav.learning_parameters import QLearning
 
 FORMAT, VERSION = "rssnav explorer session", 1
 GIGA = 1e9
-MOST_NAME = 1000
+MOST_NAME = 100
 """Maximum length of a transmitter's name."""
 
 _TRANSMISSIONS = {"max_transmissions": Range("", 0, MOST_TRANSMISSIONS, whole=True)}
@@ -125,7 +125,7 @@ class _Table:
         for key in self._values:
             if key not in keys:
                 raise ValueError(
-                    f"{self._key(shortened(key))}: unknown; expected {', '.join(keys)}"
+                    f"{self._key(key)[:MOST_NAME]!r}: unknown key; expected {', '.join(keys)}"
                 )
 
     def value(self, key: str) -> object:

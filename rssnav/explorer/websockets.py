@@ -1,6 +1,8 @@
 """Requests of browsers: not too many pages, and only messages that the page sends."""
 
+import asyncio
 import logging
+import time
 from typing import Any
 
 from bokeh.protocol.exceptions import ProtocolError
@@ -23,6 +25,7 @@ ATTRIBUTES = {
 """Properties that widgets and plots change in the browser."""
 
 UPLOAD = "upload_event"
+MOST_REST_S = 1.0
 LOGGED = 300
 """Maximum length of a log line about a message."""
 
@@ -103,12 +106,18 @@ class GuardedHandler(WSHandler):
             self.close()
 
     async def on_message(self, fragment: str | bytes) -> None:
-        """Handle a fragment of a message; close once the message is too large for an upload."""
+        """Handle a fragment of a message; close once the message is too large for an upload.
+
+        The connection then rests as long as that took, so that one that sends without end leaves
+        half of the time to the others.
+        """
         self._n_bytes += len(fragment)
         if self._n_bytes > self.limits.upload_bytes + self.limits.message_bytes:
             self._protocol_error("the message is too large")
         elif self.close_code is None:
+            begun_s = time.monotonic()
             await super().on_message(fragment)
+            await asyncio.sleep(min(time.monotonic() - begun_s, MOST_REST_S))
 
     async def _handle(self, message: Message[Any]) -> Any | None:
         """Handle a message if the page can have sent it."""
@@ -128,6 +137,8 @@ def check_message(message: Message[Any], n_bytes: int, limits: Limits) -> None:
     events = message.content.get("events", []) if message.msgtype == "PATCH-DOC" else []
     if not isinstance(events, list) or not all(isinstance(event, dict) for event in events):
         raise ProtocolError("events must be a list of objects")
+    if len(events) > limits.events:
+        raise ProtocolError(f"{len(events)} events in a message; at most {limits.events}")
     for event in events:
         check_event(event)
     if n_bytes > limits.message_bytes and not _is_upload(events):

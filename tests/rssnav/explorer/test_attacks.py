@@ -137,6 +137,47 @@ def send_to_players_and_buttons(tab: Client, value: object) -> None:
     tab.receive(0.3)
 
 
+def clicks(model_id: str, count: int) -> dict[str, object]:
+    """Content of a message with many clicks of a button."""
+    values = {"type": "map", "entries": [["model", {"id": model_id}]]}
+    data = {"type": "event", "name": "button_click", "values": values}
+    click = {"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": data}
+    return {"events": [click] * count}
+
+
+def test_thousands_of_events_leave_other_tabs_their_turn(server, tab, make) -> None:
+    attacker = make().open().wait_for_map()
+    threads, memory_bytes = server.n_threads, server.memory_bytes
+    train, keys = attacker.find("Button", "label", "Train"), attacker.find("", "name", "keys")
+    plot = attacker.find("Figure", "min_height", 280)
+    for number in range(10):
+        attacker.send("PATCH-DOC", clicks(train, 100))
+        for k in range(50):
+            place = {"x": k % 12 + 0.5, "y": number % 9 + 0.5, "sx": 1, "sy": 1}
+            attacker.event("tap", {"model": {"id": plot}, **place})
+            steps = [["right", [k % 3 - 1]], ["up", [1]], ["count", [k]]]
+            attacker.change(keys, "data", {"type": "map", "entries": steps})
+        tab.still_works()
+    assert server.n_threads < threads + 10
+    assert server.memory_bytes < memory_bytes + 100_000_000
+
+
+def test_a_message_of_too_many_events_ends_its_tab_only(tab, make) -> None:
+    attacker = make().open()
+    attacker.send("PATCH-DOC", clicks(attacker.find("Button", "label", "Train"), 300))
+    with pytest.raises(AssertionError, match="closed"):
+        attacker.until(lambda: False)
+    tab.still_works()
+
+
+def test_keys_that_the_page_does_not_send_change_nothing(tab) -> None:
+    keys = tab.find("", "name", "keys")
+    for value in (HUGE, NOT_A_NUMBER, "x", None, [], 2, -1.0, True, [[1]]):
+        for columns in ([["right", [value]], ["up", [value]]], [["right", value]], []):
+            tab.change(keys, "data", {"type": "map", "entries": columns})
+    tab.still_works()
+
+
 def _patch(**event: object) -> list[str]:
     return ["{}", json.dumps({"events": [event]})]
 
@@ -233,7 +274,22 @@ def test_a_tab_gets_its_turn_beside_greedy_ones(make) -> None:
     make().open().wait_for_map()
 
 
+HOSTILE = ("NaN", "[" * 2000, "1" * 5000)
+
+
+def test_hostile_sessions_are_refused_with_a_line(tab, make) -> None:
+    attacker = make().open()
+    for value in HOSTILE:
+        text = f'{{"format": "rssnav explorer session", "version": 1, "plan": "", "map": {value}}}'
+        attacker.upload("evil.rssnav", text.encode())
+    attacker.until(lambda: "evil.rssnav" in attacker.texts)
+    tab.still_works()
+
+
+ENORMOUS = ", ".join(f"[{k % 7}, {k}]" for k in range(200_000))
 UPLOADS = {
+    "enormous outline": f"name = 'x'\nheight_m = 3\noutline = [{ENORMOUS}]\n".encode(),
+    "courtyards": f"name = 'x'\nholes = [{', '.join(['[[0, 0], [1, 0]]'] * 100_000)}]".encode(),
     "dotted key": b"a" + b".a" * 3_000_000 + b" = 1",
     "deep": b"a = " + b"[" * 100_000,
     "many openings": (
