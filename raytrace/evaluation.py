@@ -6,6 +6,7 @@ surface, angle and polarisation frame of each interaction, exactly as a new trac
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -52,7 +53,8 @@ def evaluate_paths(
     Returns
     -------
     Paths
-        The same paths in the same order, with other gains.
+        The same paths in the same order, with other gains. A trace with a limit by power or loss
+        has left out what was weak with its own materials, antennas and frequency.
 
     Raises
     ------
@@ -78,12 +80,15 @@ class TracedPoints:
         The transmitter, and the receivers' antenna.
     kept
         The paths.
+    is_limited
+        Whether a power or a loss limits them, so that paths that are weak may be missing.
     """
 
     slabs: tuple[Slab, ...]
     transmitter: Transmitter
     receive_antenna: Antenna | None
     kept: KeptPaths
+    is_limited: bool = False
 
     @property
     def n_paths(self) -> int:
@@ -111,7 +116,15 @@ class TracedPoints:
         ----------
         slabs, transmitter, receive_antenna
             Other ones than it was traced with.
+
+        Raises
+        ------
+        ValueError
+            For other ones where a power or a loss limits the paths: those that are weak with the
+            ones of the trace are missing.
         """
+        if slabs is not None or transmitter is not None or receive_antenna is not None:
+            self._check_limits()
         tables = step_tables(
             transmitter or self.transmitter,
             slabs or self.slabs,
@@ -135,7 +148,13 @@ class TracedPoints:
             (n,) [fraction of the transmitted].
         derivatives
             (n, n_values) of the powers with respect to the values.
+
+        Raises
+        ------
+        ValueError
+            As for `powers`.
         """
+        self._check_limits()
         frequency_hz = self.transmitter.frequency_hz
         of_slabs = both_tables(slabs_at(values), frequency_hz)
         slopes, value_of = table_slopes(slabs_at, values, frequency_hz, of_slabs)
@@ -144,6 +163,14 @@ class TracedPoints:
         )
         powers, by_slab = self.kept.powers_and_slopes(tables, slopes)
         return powers, sum_by_value(by_slab, value_of, len(values))
+
+    def _check_limits(self) -> None:
+        if self.is_limited:
+            raise ValueError(
+                "paths that a power or a loss limits are those of the materials, antennas and "
+                "frequency of their trace: expected the same ones, or min_power_dbm = -inf and "
+                "a number of transmissions"
+            )
 
 
 def sum_by_value(by_slab: Floats, value_of: Ints, n_values: int) -> Floats:
@@ -203,4 +230,5 @@ def trace_points(
         )
         classes = path_classes(tracing.shared_by(workers.n))
         kept = keep_paths(workers, classes, evaluation, len(points), max_left_out, tracing.guard)
-    return TracedPoints(scene.slabs, transmitter, receive_antenna, kept)
+    is_limited = evaluation.min_power > 0.0 or math.isfinite(config.dynamic_range_db)
+    return TracedPoints(scene.slabs, transmitter, receive_antenna, kept, is_limited)

@@ -36,8 +36,11 @@ def prepare_within_range(
     reflected and transmitted.
     """
     limits = limits_from_transmitter(scene, config, evaluation)
+    grown_for = evaluation.tables if limits.loss.is_active else None
     if math.isinf(config.dynamic_range_db):
-        return prepare(scene, position, receivers, config, guard, limits)
+        tracing = prepare(scene, position, receivers, config, guard, limits)
+        return replace(tracing, grown_for=grown_for)
+    grown_for = evaluation.tables
     points = _points(scene, position[2])
     both = np.concatenate([points, receivers])
     straight = replace(config, max_reflections=0, max_diffractions=0)
@@ -48,12 +51,13 @@ def prepare_within_range(
     tracing = replace(prepare(scene, position, both, config, guard, limits), least=power)
     least = power[len(points) :]
     if not config.max_diffractions:
-        return replace(with_receivers(tracing, receivers), least=least)
+        return replace(with_receivers(tracing, receivers), least=least, grown_for=grown_for)
     power = _least(Reflections(tracing).sum_paths(evaluation).power, config, evaluation)
     loss = limits.loss._replace(least=_at_edges(scene, power))
     return replace(
         with_receivers(tracing, receivers),
         limits=limits._replace(loss=loss),
+        grown_for=grown_for,
         least=least,
         least_diffracted=power[len(points) :],
     )

@@ -63,7 +63,7 @@ class PathClass(Protocol):
     """Some of the paths from a transmitter to receivers.
 
     Their beams depend on the geometry alone, so that one set of beams can be evaluated with any
-    materials, antennas and frequencies.
+    materials, antennas and frequencies; unless a loss limits them, which is refused then.
     """
 
     def grow(self) -> int:

@@ -7,7 +7,7 @@ is repeated without them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,6 +29,7 @@ from rssnav.measurements.material_values import (
     material_values,
     plan_values,
     plan_with,
+    slabs_with,
 )
 from rssnav.measurements.predictors import OffsetPer, offset_groups
 from rssnav.measurements.survey import Survey, SurveyError
@@ -188,6 +189,9 @@ def calibrate(
     groups = offset_groups(survey, offsets)
     work = _Work(traced, of, groups, traced.levels_db(of, plan_values(of), slopes=True))
     found = work.fitted(np.ones(len(survey), dtype=bool))
+    settled = True
+    if found.told and settings.is_limited:
+        work, found, settled = _grown_anew(work, found, scene)
     steps.advance()
     if not found.told:
         raise SurveyError(
@@ -205,8 +209,44 @@ def calibrate(
         space,
         transmitter,
         curve,
-        _doubts(found),
+        _doubts(found, settled),
     )
+
+
+MOST_ROUNDS = 3
+"""Times that beams limited by power or loss are grown anew for the fitted materials."""
+
+SETTLED_DB = 0.1
+"""Root mean square change of the predictions below which they are not."""
+
+
+def _grown_anew(work: _Work, found: Calibrated, scene: Scene) -> tuple[_Work, Calibrated, bool]:
+    """Trace with the fitted materials and fit again, until the paths hold what is strong with them.
+
+    A limit by power or loss leaves out what is weak with the materials of its own trace.
+
+    Returns
+    -------
+    work, found
+        With the paths of the last trace.
+    settled
+        Whether a last trace changed the predictions little.
+    """
+    survey, settings = work.traced.survey, work.traced.settings
+    for _ in range(MOST_ROUNDS):
+        told, values = found.told, found.fit.values
+        slabs = slabs_with(scene.slabs, told, values, settings.frequency_hz)
+        anew = TracedSurvey.of(replace(scene, slabs=tuple(slabs)), survey, settings)
+        anew = replace(anew, slabs=scene.slabs)
+        before, after = (t.levels_db(told, values, slopes=False).level for t in (work.traced, anew))
+        work = work._replace(traced=anew)
+        found = work.fitted(np.ones(len(survey), dtype=bool))
+        heard = np.isfinite(before) & np.isfinite(after)
+        change_db = after[heard] - before[heard]
+        same = np.array_equal(np.isfinite(before), np.isfinite(after))
+        if not found.told or (same and np.sqrt(np.mean(change_db**2)) < SETTLED_DB):
+            return work, found, True
+    return work, found, False
 
 
 class _Steps:
@@ -303,9 +343,14 @@ def _draw(work: _Work, place: Ints, chosen: Ints) -> list[float]:
     return [np.inf if agreement is None else agreement.sigma_db**2 for agreement in both]
 
 
-def _doubts(found: Calibrated) -> tuple[str, ...]:
-    """Say which fitted values are unusual for a building material."""
+def _doubts(found: Calibrated, settled: bool) -> tuple[str, ...]:
+    """Say which fitted values are unusual for a building, and whether paths are missing."""
     doubts: list[str] = []
+    if not settled:
+        doubts.append(
+            f"the paths above the limits still change with the materials after {MOST_ROUNDS} "
+            "traces: a number of transmissions, or a wider range, would tell more"
+        )
     for value, fitted in zip(found.told, found.fit.values, strict=True):
         away = (fitted - value.prior) / value.spread
         if abs(away) > FAR:

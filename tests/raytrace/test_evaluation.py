@@ -257,3 +257,17 @@ def test_wrong_calls_are_refused() -> None:
         evaluate_paths(replace(paths, steps=None), room.scene.slabs, transmitter)
     with pytest.raises(ValueError, match="no steps"):
         _ = replace(paths, steps=None).surface
+
+
+def test_points_that_a_power_limits_are_evaluated_as_they_were_traced() -> None:
+    points = np.array([[1.0, 1.0, 1.0]])
+    box = ROOMS["door with lintel"]
+    sender = Transmitter(SOURCE, 0.0)
+    for limits in ({"min_power_dbm": -80.0}, {"dynamic_range_db": 30.0}):
+        traced = trace_points(box.scene, sender, points, TraceConfig(1, 0, 1, **limits))
+        expected = received_power(box.scene, sender, points, TraceConfig(1, 0, 1, **limits))
+        np.testing.assert_allclose(10.0 * np.log10(traced.powers()), expected, atol=1e-6)
+        with pytest.raises(ValueError, match="that a power or a loss limits"):
+            traced.powers(box.scene.slabs)
+        with pytest.raises(ValueError, match="that a power or a loss limits"):
+            traced.derivatives(lambda _: box.scene.slabs, np.zeros(0))

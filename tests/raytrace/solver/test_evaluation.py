@@ -8,9 +8,11 @@ from buildings import CEILING_BOARD, CONCRETE, GLASS, PLASTERBOARD
 from rooms import ROOMS, SOURCE
 
 from raytrace import HalfWaveDipole, Isotropic, Paths, Scene, TraceConfig, Transmitter
+from raytrace.kernels.guard import no_guard
 from raytrace.kernels.sums import Sums
 from raytrace.radio.materials import Slab
 from raytrace.solver.accumulate import sum_paths
+from raytrace.solver.dynamic_range import prepare_within_range
 from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import path_classes
 from raytrace.solver.path_class import PathClass
@@ -73,6 +75,26 @@ def test_one_set_of_beams_serves_every_variant(grown: list[PathClass], variant: 
     for some, own in zip(paths, own_paths, strict=True):
         np.testing.assert_array_equal(some.gain, own.gain)
         np.testing.assert_array_equal(some.vertices, own.vertices)
+
+
+@pytest.mark.parametrize("limits", [{"min_power_dbm": -80.0}, {"dynamic_range_db": 30.0}])
+@pytest.mark.parametrize("variant", [name for name in VARIANTS if name != "as built"])
+def test_beams_that_a_loss_limits_serve_their_own_trace_alone(
+    limits: dict[str, float], variant: str
+) -> None:
+    config = replace(CONFIG, **limits)
+    own, other = (
+        evaluation_of(VARIANTS[name][0].slabs, VARIANTS[name][1], config)
+        for name in ("as built", variant)
+    )
+    tracing = prepare_within_range(ROOM.scene, SOURCE, RECEIVERS, config, no_guard(), own)
+    again = evaluation_of(ROOM.scene.slabs, VARIANTS["as built"][1], config)
+    for path_class in path_classes(tracing)[:2]:
+        path_class.sum_paths(again)
+        with pytest.raises(ValueError, match="expected the same ones, or a new trace"):
+            path_class.sum_paths(other)
+        with pytest.raises(ValueError, match="expected the same ones, or a new trace"):
+            path_class.list_paths(other)
 
 
 def test_the_variants_differ(grown: list[PathClass]) -> None:

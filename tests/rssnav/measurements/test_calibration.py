@@ -12,7 +12,7 @@ import floorplans
 from floorplans import PlanMaterial
 from raytrace import TraceConfig
 from raytrace.radio.materials import Dielectric
-from rssnav.measurements.calibrate import Calibration, calibrate
+from rssnav.measurements.calibrate import MOST_ROUNDS, Calibration, calibrate
 from rssnav.measurements.calibration import TracedSurvey, residuals_db
 from rssnav.measurements.calibration_page import calibration_page
 from rssnav.measurements.material_values import (
@@ -188,3 +188,18 @@ def test_a_law_keeps_its_exponents_and_layers_their_thickness() -> None:
         assert slab.thickness_m == other.thickness_m
     own = next(m for m in changed.materials if m.name == "own")
     assert (own.b, own.d) == (0.1, 0.7)
+
+
+def test_beams_that_a_loss_limits_are_those_of_the_fitted_materials(
+    survey: Survey, found: Calibration, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the plan's own beams alone, what the true partition lets through is missing."""
+    limits = TraceConfig(2, 1, None, -120.0, dynamic_range_db=3.0)
+    limited, off = replace(SETTINGS, config=limits), list[float]()
+    for rounds in (MOST_ROUNDS, 0):
+        monkeypatch.setattr("rssnav.measurements.calibrate.MOST_ROUNDS", rounds)
+        fit = calibrate(room(), scene_of(room()), survey, limited, materials=["plasterboard"])
+        off.append(float(np.abs(fit.found.fit.values - found.found.fit.values).max()))
+        assert any("still change with the materials" in d for d in fit.doubts) == (rounds == 0)
+    assert off[0] < 0.1
+    assert off[0] < 0.6 * off[1]
