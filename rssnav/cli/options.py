@@ -119,7 +119,7 @@ DynamicRange = Annotated[
         min=1.0,
         max=1000.0,
         help="Leave out paths this far below the reflected and transmitted power of a cell.",
-        show_default="25 with --transmissions none, otherwise no limit",
+        show_default="15 without a number of transmissions, otherwise no limit",
     ),
 ]
 From = Annotated[
@@ -148,7 +148,7 @@ MinPower = Annotated[
         min=-1000.0,
         max=200.0,
         help="Leave out paths below this power; the map stores a bound on what is missing.",
-        show_default="no threshold",
+        show_default="-120 without a number of transmissions, otherwise no threshold",
     ),
 ]
 MaxPaths = Annotated[

@@ -15,7 +15,7 @@ from floorplans import FloorPlan
 from raytrace import Antenna, TraceConfig, Transmitter
 from rssnav.cli.options import UNLIMITED
 from rssnav.maps import HEIGHT_M
-from rssnav.presets import BY_LOSS, PRESETS, Preset, default_preset
+from rssnav.presets import BY_LOSS, BY_NUMBER, PRESETS, Preset, default_preset
 from rssnav.transmitters import NoTransmitterError, Sending, antenna_of, choose_transmitters
 
 Position = tuple[float, float, float]
@@ -82,7 +82,7 @@ def config_of(preset: Preset, options: dict[str, Any]) -> TraceConfig:
     if transmissions == UNLIMITED:
         given = {**BY_LOSS, **given, "max_transmissions": None}
     elif transmissions is not None:
-        given["max_transmissions"] = int(transmissions)
+        given = {**BY_NUMBER, **given, "max_transmissions": int(transmissions)}
     return replace(preset.config, **given)
 
 

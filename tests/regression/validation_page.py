@@ -16,6 +16,7 @@ from rssnav.measurements.calibrate import Calibration, Change, calibrate
 from rssnav.measurements.survey_csv import read_survey, transmitters_of
 from rssnav.measurements.traced import TraceSettings, traced_dbm
 from rssnav.measurements.validation import Row, Validation, validate
+from rssnav.presets import PRESETS
 from rssnav.scenes import scene_of
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation.md"
@@ -29,7 +30,7 @@ def tables() -> dict[str, Cells]:
     plan = floorplans.load(FLAT / "flat.toml")
     survey = read_survey(FLAT / "survey.csv", plan, transmitters_of(plan, FLAT))
     scene = scene_of(plan)
-    building = TraceSettings(TraceConfig(3, 1, 3), 2.44e9)
+    building = TraceSettings(PRESETS["building"].config, 2.44e9)
     unknown = Isotropic(polarisation="mean")
     isotropic = replace(building, transmit_antenna=unknown, receive_antenna=unknown)
     vertical = replace(building, transmit_antenna=Isotropic(), receive_antenna=Isotropic())

@@ -28,6 +28,9 @@ NO_FLIGHT = "\n".join(
     line for line in HEAD.splitlines() if not line.startswith(("source", "start"))
 )
 SURVEYED = f"{NO_FLIGHT}\n{ACCESS_POINTS}\n[[walls]]{WALLS}"
+BY_LOSS = TraceConfig(1, 0, None, -120.0, dynamic_range_db=15.0)
+"""The limits of the preset `building`, with those of `QUICK`."""
+
 UNKNOWN = Isotropic(polarisation="mean")
 QUICK = ("--reflections", "1", "--diffractions", "0")
 
@@ -46,7 +49,7 @@ def test_all_transmitters_of_a_plan_without_source_are_mapped(plan, tmp_path) ->
     west, east = (one.transmitter for one in maps.values())
     assert (west.power_dbm, west.frequency_hz, west.antenna) == (20.0, 2.4e9, UNKNOWN)
     assert (east.power_dbm, east.frequency_hz, east.antenna) == (25.0, 5.2e9, HalfWaveDipole())
-    assert maps.first.config == TraceConfig(1, 0, 3)
+    assert maps.first.config == BY_LOSS
     assert maps.first.receive_antenna == UNKNOWN
     assert picture.read_text().count('id="transmitter"') >= 2
     again = run("map", plan, "-o", target, *QUICK)
@@ -126,8 +129,13 @@ def test_presets_follow_the_plan_and_single_options_override_them(tmp_path) -> N
 def test_transmissions_may_be_limited_by_loss(tmp_path) -> None:
     plan, target = room_file(tmp_path), tmp_path / "map.h5"
     done("map", plan, "-o", target, *QUICK, "--transmissions", "none")
-    by_loss = TraceConfig(1, 0, None, -120.0, dynamic_range_db=25.0)
-    assert RadioMap.load(target).config == by_loss
+    assert RadioMap.load(target).config == BY_LOSS
+    done("map", plan, "-o", target, *QUICK, "--preset", "building", "--force")
+    assert RadioMap.load(target).config == BY_LOSS
+    done(
+        "map", plan, "-o", target, *QUICK, "--preset", "building", "--transmissions", "2", "--force"
+    )
+    assert RadioMap.load(target).config == TraceConfig(1, 0, 2)
     limits = ("--min-power", "-90", "--dynamic-range", "12")
     done("map", plan, "-o", target, *QUICK, "--transmissions", "none", *limits, "--force")
     by_loss = TraceConfig(1, 0, None, -90.0, dynamic_range_db=12.0)

@@ -661,7 +661,8 @@ def test_a_transmitter_of_the_plan_is_mapped_as_the_command_does(with_transmitte
         TWO_ROOMS.transmitters[0]
     )
     made = make_map(
-        TWO_ROOMS, transmitter=sent, cell_size_m=1.5, config=TraceConfig(2, 1, 3),
+        TWO_ROOMS, transmitter=sent, cell_size_m=1.5,
+        config=replace(PRESETS["building"].config, max_reflections=2),
         receive_antenna=session.settings.receive_antenna.antenna,
     )  # fmt: skip
     np.testing.assert_array_equal(traced.rss_dbm, made.rss_dbm)
