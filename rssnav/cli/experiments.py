@@ -29,6 +29,14 @@ class What(StrEnum):
     READINGS = "readings"
 
 
+class StepCount(StrEnum):
+    """Names of :class:`rssnav.experiments.paper.counting.Count` on the command line."""
+
+    ALL = "all"
+    WITHOUT_LAST = "without-last"
+    WITHOUT_FIRST = "without-first"
+
+
 def add_to(parent: typer.Typer) -> None:
     """Add the commands ``experiments`` and ``report``."""
     parent.command(
@@ -73,6 +81,13 @@ def run_experiments(
         bool,
         typer.Option("--resume/--no-resume", help="Resume from saved runs, or start over."),
     ] = True,
+    count: Annotated[
+        StepCount,
+        typer.Option(
+            help="Steps that a length counts which is compared with the paper's: all, or all but "
+            "the last or the first. Flights of all its lengths exist if one is left out."
+        ),
+    ] = StepCount.WITHOUT_LAST,
     style: Style = None,
     max_memory: MaxMemory = None,
     threads: Threads = None,
@@ -82,12 +97,12 @@ def run_experiments(
     Results that are up to date are reused. Finished runs are saved every few seconds, so that the
     same command resumes after Ctrl-C or a crash.
     """
-    if what is not What.PAPER and runs is not None:
-        raise typer.BadParameter("--runs applies to the paper only.")
+    if what is not What.PAPER and (runs is not None or count is not StepCount.WITHOUT_LAST):
+        raise typer.BadParameter("--runs and --count apply to the paper only.")
     max_memory_bytes = in_bytes(max_memory)
     try:
         if what is What.PAPER:
-            _run_paper(out, quick, runs, seed, threads, max_memory_bytes, resume, style)
+            _run_paper(out, quick, runs, seed, threads, max_memory_bytes, resume, count, style)
         else:
             _run_study(what, out, quick, seed, threads, max_memory_bytes, resume, style)
     except KeyboardInterrupt as interrupt:
@@ -105,9 +120,11 @@ def _run_paper(
     threads: int | None,
     max_memory_bytes: int | None,
     resume: bool,
+    count: StepCount,
     style: str | None,
 ) -> None:
     from rssnav.experiments.paper import run_paper
+    from rssnav.experiments.paper.counting import Count
     from rssnav.pictures.style import chosen_style
 
     with stage_progress() as show, chosen_style(style):
@@ -119,6 +136,7 @@ def _run_paper(
             threads=threads,
             max_memory_bytes=max_memory_bytes,
             resume=resume,
+            count=Count[count.name],
             progress=show,
             notice=note,
         )

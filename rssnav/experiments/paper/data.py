@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rssnav.agents import Agent, LocationAgent, RssAgent
+from rssnav.experiments.paper.counting import SUPPORTED_COUNT, Count
 from rssnav.experiments.paper.first_episodes import FirstEpisodes
 from rssnav.experiments.paper.scenarios import PLANS, SPEEDS, Scenario
 from rssnav.optimal_flights import Flight, shortest_path
@@ -84,11 +85,14 @@ class PaperData:
         Trainings.
     first_episodes : mapping of Configuration to FirstEpisodes
         First episodes of each realisation, for :data:`VISITS_CONFIGURATIONS`.
+    count : Count
+        Which steps a length counts that is compared with the paper's.
     """
 
     scenarios: Mapping[int, Scenario]
     results: Mapping[Configuration, TrainingResult]
     first_episodes: Mapping[Configuration, FirstEpisodes]
+    count: Count = SUPPORTED_COUNT
 
     def result(self, scenario: int, agent: AgentName, speed: int) -> TrainingResult:
         """Return the training of a configuration."""

@@ -96,6 +96,11 @@ INTERPRETATIONS: tuple[Interpretation, ...] = (
         "The paper does not say which.",
     ),
     Interpretation(
+        "Length of a trajectory",
+        "The last step is left out; the table also has the lengths with all steps.",
+        "Flights of all twelve printed lengths exist only if one step of each is left out.",
+    ),
+    Interpretation(
         "Crash check",
         "A step is impossible when its straight segment touches a wall or leaves the building.",
         "The paper checks the next position; a diagonal step could then cut a corner.",

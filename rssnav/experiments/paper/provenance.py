@@ -14,6 +14,7 @@ from importlib.metadata import version
 from typing import Any
 
 from rssnav.agent_description import describe, flat_parameters
+from rssnav.experiments.paper.counting import SUPPORTED_COUNT, Count
 from rssnav.experiments.paper.data import PaperData
 from rssnav.experiments.tables import Column, Table
 from rssnav.schedule import NO_STEP_LIMIT
@@ -43,6 +44,8 @@ class Record:
         Whether it was a quick run with few realisations.
     plans : tuple of str
         Plans of the scenarios: built-in names or files.
+    count : Count
+        Which steps a length counts that is compared with the paper's.
     stages : dict of str to float
         Wall time of each stage [s].
     trained : dict of str to float
@@ -55,6 +58,7 @@ class Record:
     runs: int
     quick: bool
     plans: tuple[str, ...]
+    count: Count = SUPPORTED_COUNT
     stages: dict[str, float] = field(default_factory=dict[str, float])
     trained: dict[str, float] = field(default_factory=dict[str, float])
     started: str = field(default_factory=lambda: datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"))

@@ -124,6 +124,7 @@ def summary(report: Report) -> dict[str, Any]:
             "seed": record.seed,
             "quick": record.quick,
             "plans": list(record.plans),
+            "count": str(record.count),
             "started": record.started,
         },
         "verdicts": report.verdict_counts,

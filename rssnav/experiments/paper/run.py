@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rssnav.experiments.paper import trainings
 from rssnav.experiments.paper.claims import ClaimResult, claims_table, examine
+from rssnav.experiments.paper.counting import SUPPORTED_COUNT, Count
 from rssnav.experiments.paper.data import (
     CONFIGURATIONS,
     SHOWN_EPISODES,
@@ -89,6 +90,7 @@ def run_paper(
     max_memory_bytes: int | None = None,
     resume: bool = True,
     plans: Sequence[str | Path] = PLANS,
+    count: Count = SUPPORTED_COUNT,
     progress: StageProgress | None = None,
     notice: Notice | None = None,
 ) -> Paper:
@@ -116,6 +118,8 @@ def run_paper(
         Reuse existing trainings; otherwise train again.
     plans : sequence of str or Path
         Floor plans of Scenarios 1 and 2: built-in names or files.
+    count : Count
+        Which steps a length counts that is compared with the paper's.
     progress : callable, optional
         Called as ``progress(stage, done, total)``; a stage is done when ``done == total``. The
         stages are "map of <plan>" for each plan, "training", "first episodes", "figures" and
@@ -143,13 +147,13 @@ def run_paper(
         raise ValueError(f"plans: {len(plans)} given; the paper needs two")
     out, progress, notice = Path(out), progress or ignore, notice or ignore
     runs = (QUICK_RUNS if quick else RUNS) if runs is None else runs
-    record = Record(seed, runs, quick, tuple(str(plan) for plan in plans))
+    record = Record(seed, runs, quick, tuple(str(plan) for plan in plans), count)
     store = TrainingStore(out / "training" / f"{runs}-runs", threads, resume, notice)
     plan = TrainingPlan(store, runs, seed)
     run = _Run(out, plan, record, threads, max_memory_bytes, progress, notice)
     scenarios = _load_scenarios(run, plans)
     results = _train(run, scenarios)
-    data = PaperData(scenarios, results, _fly_first_episodes(run, results))
+    data = PaperData(scenarios, results, _fly_first_episodes(run, results), count)
     pictures = _draw(run, data)
     return _write(run, data, pictures)
 
@@ -178,6 +182,7 @@ def report_again(
         runs=settings.runs,
         seed=settings.seed,
         plans=settings.plans,
+        count=settings.count,
         threads=threads,
         max_memory_bytes=max_memory_bytes,
         progress=progress,
@@ -194,14 +199,16 @@ def _settings(summary: Path) -> Record:
     try:
         found = json.loads(summary.read_text(encoding="utf-8"))["run"]
         values = found["seed"], found["runs"], found["quick"], tuple(found["plans"])
+        count = Count(found["count"])
         types = [type(value) for value in (*values, *values[3])]
     except (ValueError, LookupError, TypeError, RecursionError) as error:
         raise ResultFileError(f"{summary} is damaged ({error}); run the paper again") from error
     if types != [int, int, bool, tuple, str, str] or min(values[:2]) < 0 or values[1] < 1:
         raise ResultFileError(
-            f"{summary} is damaged: run = {found!r:.200}, expected seed, runs, quick and two plans"
+            f"{summary} is damaged: run = {found!r:.200}, expected seed, runs, quick, two plans "
+            "and a count"
         )
-    return Record(*values)
+    return Record(*values, count)
 
 
 def _load_scenarios(run: _Run, plans: Sequence[str | Path]) -> dict[int, Scenario]:

@@ -20,6 +20,7 @@ import rssnav.experiments.paper
 from raytrace import RadioMap, TraceConfig
 from rssnav import TrainingResult
 from rssnav.cli.plan_sketch import sketch
+from rssnav.experiments.paper.counting import Count
 
 COMMANDS = (
     (),
@@ -294,7 +295,7 @@ def test_experiments_passes_its_options_on(monkeypatch, tmp_path) -> None:
     assert paper.out == tmp_path
     assert paper.options == {
         "quick": True, "runs": 3, "seed": 5, "threads": None, "max_memory_bytes": None,
-        "resume": False,
+        "resume": False, "count": Count.WITHOUT_LAST,
     }  # fmt: skip
 
 
@@ -337,7 +338,15 @@ def test_every_command_that_traces_passes_its_memory_limit_on(
         raise TraceCalledError(max_memory_bytes)
 
     monkeypatch.chdir(tmp_path)
-    summary = {"run": {"seed": 0, "runs": 1, "quick": True, "plans": ["flat", "flat"]}}
+    summary = {
+        "run": {
+            "seed": 0,
+            "runs": 1,
+            "quick": True,
+            "plans": ["flat", "flat"],
+            "count": "all steps",
+        }
+    }
     (tmp_path / "results").mkdir()
     (tmp_path / "results" / "summary.json").write_text(json.dumps(summary))
     monkeypatch.setattr(f"{module}.{function}", trace)

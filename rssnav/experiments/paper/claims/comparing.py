@@ -18,13 +18,19 @@ PerRun = Callable[[TrainingResult], NDArray[np.float64]]
 
 
 def agents_differ(
-    data: PaperData, scenario: int, speed: int, value: PerRun, *, larger: AgentName
+    data: PaperData,
+    scenario: int,
+    speed: int,
+    value: PerRun,
+    *,
+    larger: AgentName,
+    detail: str = "",
 ) -> Case:
     """Test that a value's mean is larger for one agent than for the other."""
     smaller: AgentName = "rss" if larger == "location" else "location"
     first, second = (value(data.result(scenario, a, speed)) for a in (larger, smaller))
     labels = (AGENT_LABELS[larger], AGENT_LABELS[smaller])
-    return _compare(place(scenario, speed), labels, first, second, difference, positive)
+    return _compare(place(scenario, speed, detail), labels, first, second, difference, positive)
 
 
 def agents_alike(
@@ -38,8 +44,7 @@ def agents_alike(
     """Test the ratio of a value's mean, RSS-based over location-based."""
     first, second = (value(data.result(scenario, a, speed)) for a in ("rss", "location"))
     labels = (AGENT_LABELS["rss"], AGENT_LABELS["location"])
-    name = place(scenario, speed) + (f", {detail}" if detail else "")
-    return _compare(name, labels, first, second, ratio, decide)
+    return _compare(place(scenario, speed, detail), labels, first, second, ratio, decide)
 
 
 def falls_with_speed(data: PaperData, scenario: int, value: PerRun) -> Iterator[Case]:
@@ -52,9 +57,9 @@ def falls_with_speed(data: PaperData, scenario: int, value: PerRun) -> Iterator[
             yield _compare(name, labels, first, second, difference, positive)
 
 
-def place(scenario: int, speed: int) -> str:
+def place(scenario: int, speed: int, detail: str = "") -> str:
     """Return the text for a scenario and a speed."""
-    return f"Scenario {scenario}, {speed} m/s"
+    return f"Scenario {scenario}, {speed} m/s" + (f", {detail}" if detail else "")
 
 
 def _compare(

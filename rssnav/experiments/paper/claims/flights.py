@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.experiments.paper.claims.comparing import agents_alike, agents_differ, place
+from rssnav.experiments.paper.claims.comparing import PerRun, agents_alike, agents_differ, place
 from rssnav.experiments.paper.claims.verdicts import Case, Claim, between, case, undecided
+from rssnav.experiments.paper.counting import COMPARED_COUNTS, Count, counted_lengths_m
 from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS, PaperData, flights, terminal_states
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
 from rssnav.experiments.paper.shortest_flights import shortest_flights
@@ -58,10 +60,6 @@ def _turns_per_run(result: TrainingResult) -> NDArray[np.float64]:
     return np.array([turns(result.world, flight) for flight in flights(result)])
 
 
-def _lengths(result: TrainingResult) -> NDArray[np.float64]:
-    return result.path_length_m[result.reached]
-
-
 def _steps(result: TrainingResult) -> NDArray[np.float64]:
     return result.path_steps[result.reached].astype(np.float64)
 
@@ -92,6 +90,15 @@ def _everywhere(test: Callable[[PaperData, int, int], Case]) -> Callable[[PaperD
     return lambda data: [
         test(data, scenario, speed) for scenario in data.scenarios for speed in data.speeds
     ]
+
+
+def _lengths(count: Count) -> PerRun:
+    return lambda result: counted_lengths_m(result, count)
+
+
+def _length_cases(data: PaperData) -> Iterator[tuple[int, int, Count]]:
+    """Scenarios and speeds, under each count of the steps."""
+    return product(data.scenarios, data.speeds, COMPARED_COUNTS)
 
 
 def _scenario_2_needs_more_steps(data: PaperData) -> Iterator[Case]:
@@ -129,7 +136,10 @@ CLAIMS = (
         "The location-based agent's final path is shorter, as it is straighter.",
         "Length of the final flight. Reproduced where the RSS-based agent's is longer.",
         "length [m], RSS-based minus location-based",
-        _everywhere(lambda d, s, v: agents_differ(d, s, v, _lengths, larger="rss")),
+        lambda data: [
+            agents_differ(data, s, v, _lengths(count), larger="rss", detail=count)
+            for s, v, count in _length_cases(data)
+        ],
     ),
     Claim(
         "lengths-close",
@@ -137,7 +147,10 @@ CLAIMS = (
         f"Ratio of the mean lengths. Reproduced where it lies within a factor {_CLOSE:.3f}, the "
         "largest in the paper's table.",
         "ratio of lengths, RSS-based over location-based",
-        _everywhere(lambda d, s, v: agents_alike(d, s, v, _lengths, between(1.0 / _CLOSE, _CLOSE))),
+        lambda data: [
+            agents_alike(data, s, v, _lengths(count), between(1.0 / _CLOSE, _CLOSE), count)
+            for s, v, count in _length_cases(data)
+        ],
     ),
     Claim(
         "scenario-2-longer",

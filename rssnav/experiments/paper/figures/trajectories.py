@@ -84,8 +84,8 @@ def _legend(figure: Figure, panels: Sequence[Axes]) -> None:
 def caption(data: PaperData) -> str:
     """Return the caption."""
     lengths = "; ".join(
-        f"{AGENT_LABELS[agent]} {result.path_length_m[median]:.1f} m in "
-        f"{result.path_steps[median]} steps (Scenario {number})"
+        f"{AGENT_LABELS[agent]} {result.path_length_m[median]:.1f} m with all "
+        f"{result.path_steps[median]} steps counted (Scenario {number})"
         for agent in _ORDER
         for number in data.scenarios
         if (median := median_run(result := data.result(number, agent, SPEED))) is not None

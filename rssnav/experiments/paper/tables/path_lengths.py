@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rssnav.experiments.paper.counting import COMPARED_COUNTS, Count, counted_lengths_m
 from rssnav.experiments.paper.data import Configuration, PaperData
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
 from rssnav.experiments.paper.tables.configuration import (
@@ -16,11 +17,13 @@ from rssnav.results import TrainingResult
 
 def table(data: PaperData) -> Table:
     """Make a row per configuration."""
+    other = _other(data.count)
     return Table(
         "path_lengths",
         "Length of the final trajectories (the paper's Table IV)",
         "Greedy flights after training, over the realisations whose flight arrives; the others "
-        "end in a cycle. Shortest and fewest possible: Dijkstra over the possible steps. Straight "
+        f"end in a cycle. Lengths count the steps so: {data.count}; the other lengths: {other}. "
+        "Shortest and fewest possible: Dijkstra over the possible steps. Straight "
         "and diagonal steps cost the agents the same, so they minimise steps rather than metres.",
         (
             *CONFIGURATION_COLUMNS,
@@ -30,6 +33,8 @@ def table(data: PaperData) -> Table:
             Column("median_m", "Median [m]", 2),
             Column("paper_m", "Paper [m]", 2),
             Column("ratio_to_paper", "Mean / paper", 3),
+            Column("other_mean_m", "Other mean [m]", 2),
+            Column("other_ratio_to_paper", "Other mean / paper", 3),
             Column("shortest_m", "Shortest possible [m]", 2),
             Column("mean_steps", "Mean [steps]", 1),
             Column("sd_steps", "± sd [steps]", 1),
@@ -45,7 +50,7 @@ def _row(data: PaperData, key: Configuration, result: TrainingResult) -> tuple[C
     return (
         *configuration_cells(key),
         int(result.reached.sum()),
-        *_lengths(result, PATH_LENGTH_M.get(key)),
+        *_lengths(data.count, result, PATH_LENGTH_M.get(key)),
         data.shortest_in_metres[place].length_m,
         mean_cell(steps),
         float(steps.std()) if steps.size else None,
@@ -53,10 +58,20 @@ def _row(data: PaperData, key: Configuration, result: TrainingResult) -> tuple[C
     )
 
 
-def _lengths(result: TrainingResult, paper_m: float | None) -> tuple[Cell, ...]:
-    lengths_m = result.path_length_m[result.reached]
+def _other(count: Count) -> Count:
+    """Return the count that lengths are shown under beside the chosen one."""
+    return next(each for each in COMPARED_COUNTS if each is not count)
+
+
+def _lengths(count: Count, result: TrainingResult, paper_m: float | None) -> tuple[Cell, ...]:
+    lengths_m = counted_lengths_m(result, count)
     if lengths_m.size == 0:
-        return None, None, None, paper_m, None
+        return None, None, None, paper_m, None, None, None
     mean_m = float(lengths_m.mean())
-    ratio = None if paper_m is None else mean_m / paper_m
-    return mean_m, float(lengths_m.std()), float(np.median(lengths_m)), paper_m, ratio
+    other_m = float(counted_lengths_m(result, _other(count)).mean())
+    spread = float(lengths_m.std()), float(np.median(lengths_m))
+    return mean_m, *spread, paper_m, _ratio(mean_m, paper_m), other_m, _ratio(other_m, paper_m)
+
+
+def _ratio(mean_m: float, paper_m: float | None) -> float | None:
+    return None if paper_m is None else mean_m / paper_m

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.experiments.studies.readings.interpretations import Count, Geometry
+from rssnav.experiments.paper.counting import Count
+from rssnav.experiments.studies.readings.interpretations import Geometry
 from rssnav.experiments.studies.readings.lengths import StepCounts
 from rssnav.world import ACTIONS
 

@@ -11,7 +11,8 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from rssnav.experiments.studies.readings.interpretations import GOALS, OFFSETS_M, STARTS, Count
+from rssnav.experiments.paper.counting import Count
+from rssnav.experiments.studies.readings.interpretations import GOALS, OFFSETS_M, STARTS
 from rssnav.experiments.studies.readings.outcome import Outcome
 from rssnav.pictures.style import PAGE_IN, label_panel, new_figure, styled
 

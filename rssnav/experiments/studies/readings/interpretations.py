@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from itertools import product
 
 import numpy as np
@@ -11,14 +10,6 @@ from numpy.typing import NDArray
 
 INSIDE = 1e-9
 """Slack of a comparison of distances [m]."""
-
-
-class Count(StrEnum):
-    """Which steps the printed length counts."""
-
-    ALL = "all steps"
-    WITHOUT_LAST = "last step left out"
-    WITHOUT_FIRST = "first step left out"
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rssnav.experiments.paper.counting import Count
 from rssnav.experiments.paper.data import CONFIGURATIONS, Configuration
 from rssnav.experiments.studies.readings.empty_floor import FLOORS, Arrivals, arrivals, lattice
-from rssnav.experiments.studies.readings.interpretations import Count, Geometry
+from rssnav.experiments.studies.readings.interpretations import Geometry
 from rssnav.experiments.studies.readings.lengths import supposed_counts
 
 

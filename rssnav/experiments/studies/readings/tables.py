@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rssnav.experiments.paper.counting import Count
 from rssnav.experiments.paper.data import AGENTS, CONFIGURATIONS, Configuration
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
 from rssnav.experiments.paper.scenarios import SPEEDS
@@ -12,7 +13,6 @@ from rssnav.experiments.studies.readings.interpretations import (
     SOURCE_SHIFTS_M,
     STARTS,
     STATED_GOAL,
-    Count,
 )
 from rssnav.experiments.studies.readings.lengths import (
     CHANCE_RANGE_M,

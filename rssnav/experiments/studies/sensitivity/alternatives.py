@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rssnav.experiments.paper.counting import SUPPORTED_COUNT, counted_lengths_m
 from rssnav.experiments.paper.data import AGENTS, CONFIGURATIONS, SHOWN_EPISODES, Configuration
 from rssnav.experiments.paper.trainings import EPISODE_LIMIT
 from rssnav.experiments.studies.study import Conditions
@@ -101,7 +102,10 @@ class Outcome:
     episodes, steps : (C,) float64
         Episodes and steps until convergence, of the C runs that converged.
     length_m, path_steps : (A,) float64
-        Length [m] and steps of the A final flights that reach the source.
+        Length [m], all steps counted, and steps of the A final flights that reach the source.
+    counted_m : (A,) float64 or None
+        Length [m] with :data:`~rssnav.experiments.paper.counting.SUPPORTED_COUNT`; None where the
+        flights themselves were not stored.
     obstacle : str
         Why it could not be trained; empty if it could.
     """
@@ -113,6 +117,7 @@ class Outcome:
     steps: NDArray[np.float64]
     length_m: NDArray[np.float64]
     path_steps: NDArray[np.float64]
+    counted_m: NDArray[np.float64] | None = None
     obstacle: str = ""
 
 
@@ -137,7 +142,9 @@ def measure(trial: Trial, conditions: Conditions) -> list[Outcome]:
         )
     except WorldError as error:
         none = np.empty(0)
-        return [Outcome(alternative, key, conditions.runs, none, none, none, none, str(error))]
+        return [
+            Outcome(alternative, key, conditions.runs, none, none, none, none, none, str(error))
+        ]
     outcome = _greedy(alternative, key, result)
     return [outcome, _flown(outcome, result)] if alternative == OURS else [outcome]
 
@@ -163,6 +170,7 @@ def _greedy(alternative: Alternative, key: Configuration, result: TrainingResult
         result.converged_steps[converged].astype(np.float64),
         result.path_length_m[result.reached],
         result.path_steps[result.reached].astype(np.float64),
+        counted_lengths_m(result, SUPPORTED_COUNT),
     )
 
 
@@ -175,4 +183,5 @@ def _flown(outcome: Outcome, result: TrainingResult) -> Outcome:
         alternative=FLOWN,
         length_m=result.episode_length_m[runs, last],
         path_steps=result.steps[runs, last].astype(np.float64),
+        counted_m=None,
     )

@@ -19,7 +19,8 @@ from rssnav.experiments import training_store
 from rssnav.experiments.paper import report_again, run_paper
 from rssnav.experiments.paper import run as paper
 from rssnav.experiments.paper.claims import CLAIMS
-from rssnav.experiments.paper.data import Configuration
+from rssnav.experiments.paper.counting import COMPARED_COUNTS, Count, counted_lengths_m
+from rssnav.experiments.paper.data import Configuration, flights
 from rssnav.experiments.paper.figures import FIGURES
 from rssnav.experiments.paper.first_episodes import first_episodes
 from rssnav.experiments.paper.interpretation import INTERPRETATIONS
@@ -165,15 +166,23 @@ def test_without_a_run_there_is_nothing_to_report_on(tmp_path):
         report_again(tmp_path)
 
 
+def run_summary(**changed):
+    """Text of a summary with a fault."""
+    settings = {"seed": 0, "runs": 3, "quick": True, "plans": ["a", "b"], "count": "all steps"}
+    return json.dumps({"run": settings | changed})
+
+
 @pytest.mark.parametrize(
     "text",
     [
         "{",
         "[]",
         '{"run": 1}',
-        '{"run": {"seed": 0, "runs": 3, "quick": 1, "plans": ["flat", "flat"]}}',
-        '{"run": {"seed": 0, "runs": -3, "quick": true, "plans": ["flat", "flat"]}}',
-        '{"run": {"seed": 0, "runs": 3, "quick": true, "plans": ["flat", null]}}',
+        run_summary(quick=1),
+        run_summary(runs=-3),
+        run_summary(plans=["flat", None]),
+        run_summary(count=None),
+        run_summary(count="some"),
         "[" * 100_000,
     ],
 )
@@ -280,7 +289,7 @@ def test_path_lengths_are_those_of_the_flights_that_arrive():
     key = Configuration(2, "location", 2)
     arrived = np.array([True, False, True])
     result = replace(data.results[key], path_length_m=np.array([1.0, 50.0, 2.0]), reached=arrived)
-    data = replace(data, results={**data.results, key: result})
+    data = replace(data, results={**data.results, key: result}, count=Count.ALL)
     row = path_lengths(data).records()[list(data.results).index(key)]
     assert (row["scenario"], row["agent"], row["speed_mps"]) == (2, "location-based", 2)
     assert (row["arrived"], row["mean_m"], row["sd_m"], row["median_m"]) == (2, 1.5, 0.5, 1.5)
@@ -288,6 +297,28 @@ def test_path_lengths_are_those_of_the_flights_that_arrive():
     assert row["ratio_to_paper"] == pytest.approx(1.5 / 121.05)
     assert row["shortest_m"] == data.shortest_in_metres[2, 2].length_m
     assert row["fewest_steps"] == data.shortest_in_steps[2, 2].steps
+
+
+@pytest.mark.parametrize(
+    ("count", "counted"),
+    [
+        (Count.ALL, slice(None)),
+        (Count.WITHOUT_LAST, slice(-1)),
+        (Count.WITHOUT_FIRST, slice(1, None)),
+    ],
+)
+def test_lengths_count_the_steps_they_say(count, counted):
+    for result in small_data().results.values():
+        steps = [np.diff(result.world.position[flight], axis=0) for flight in flights(result)]
+        wanted = [np.hypot(*step[counted].T).sum() for step in steps]
+        np.testing.assert_allclose(counted_lengths_m(result, count), wanted, atol=1e-9)
+
+
+def test_path_lengths_are_compared_under_both_counts():
+    shown, other = (path_lengths(replace(small_data(), count=c)).records() for c in COMPARED_COUNTS)
+    for one, two in zip(shown, other, strict=True):
+        assert (one["mean_m"], one["other_mean_m"]) == (two["other_mean_m"], two["mean_m"])
+        assert one["mean_m"] <= one["other_mean_m"] - one["speed_mps"]
 
 
 def test_the_optimum_is_not_beaten():
@@ -331,7 +362,7 @@ def test_csv_files_hold_the_results_to_the_last_digit(run):
     with (run.out / "tables" / "path_lengths.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     for row, result in zip(rows, run.paper.data.results.values(), strict=True):
-        assert float(row["mean_m"]) == result.path_length_m[result.reached].mean()
+        assert float(row["other_mean_m"]) == result.path_length_m[result.reached].mean()
         assert float(row["mean_steps"]) == result.path_steps[result.reached].mean()
     with (run.out / "tables" / "convergence.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -346,7 +377,7 @@ def test_the_summary_holds_results_verdicts_and_record(run):
     assert [claim["key"] for claim in summary["claims"]] == [claim.key for claim in CLAIMS]
     rows = summary["tables"]["path_lengths"]
     for row, result in zip(rows, run.paper.data.results.values(), strict=True):
-        assert row["mean_m"] == result.path_length_m.mean()
+        assert row["other_mean_m"] == result.path_length_m.mean()
     assert {"python", "numpy", "numba", "rssnav"} <= set(summary["versions"])
     for number_, scenario in run.paper.data.scenarios.items():
         assert summary["scenarios"][f"Scenario {number_}"]["plan_sha256"] == scenario.plan.sha256

@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+from rssnav.experiments.paper.counting import Count
 from rssnav.experiments.studies.readings.empty_floor import (
     FLOORS,
     Floor,
@@ -14,7 +15,7 @@ from rssnav.experiments.studies.readings.empty_floor import (
     arrivals,
     lattice,
 )
-from rssnav.experiments.studies.readings.interpretations import STATED_GOAL, Count, Geometry, Goal
+from rssnav.experiments.studies.readings.interpretations import STATED_GOAL, Geometry, Goal
 from rssnav.experiments.studies.readings.lengths import StepCounts
 from rssnav.world import ACTIONS
 

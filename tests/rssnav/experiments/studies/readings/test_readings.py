@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from rssnav.experiments.paper.counting import Count
 from rssnav.experiments.studies.readings import study, tables
 from rssnav.experiments.studies.readings.interpretations import (
     GOALS,
     OFFSETS_M,
     STATED_GOAL,
-    Count,
     Geometry,
     geometries,
 )
