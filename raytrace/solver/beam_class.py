@@ -78,7 +78,7 @@ class BeamClass(ABC, Generic[Beams]):
         return self._tracing.least_diffracted
 
     def _collector(self, evaluation: Evaluation, record: Record, guard: Guard) -> Collector:
-        self._tracing.check_evaluation(evaluation.tables)
+        evaluation.check_beams(self._tracing.grown_for)
         geometry, least = self._tracing.geometry, self._least()
         heights = np.zeros((0, 0))
         if len(least) or evaluation.min_power > 0.0:

@@ -36,11 +36,11 @@ def prepare_within_range(
     reflected and transmitted.
     """
     limits = limits_from_transmitter(scene, config, evaluation)
-    grown_for = evaluation.tables if limits.loss.is_active else None
+    grown_for = evaluation.digest if limits.loss.is_active else None
     if math.isinf(config.dynamic_range_db):
         tracing = prepare(scene, position, receivers, config, guard, limits)
         return replace(tracing, grown_for=grown_for)
-    grown_for = evaluation.tables
+    grown_for = evaluation.digest
     points = _points(scene, position[2])
     both = np.concatenate([points, receivers])
     straight = replace(config, max_reflections=0, max_diffractions=0)

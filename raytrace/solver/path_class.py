@@ -1,9 +1,12 @@
 """What the solver knows of a path finder: classes of paths that can be summed and listed."""
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
+
+import numpy as np
 
 from raytrace.arrays import Floats, Ints
 from raytrace.kernels.field_tables import FieldTables
@@ -32,6 +35,35 @@ class Evaluation:
     def n_pairs(self) -> int:
         """Pairs of polarisations that each path has gains between, see `sums.Sums`."""
         return 1 if self.tables.unknown is None else PAIRS
+
+    @cached_property
+    def digest(self) -> bytes:
+        """Digest of the tables."""
+        found = hashlib.sha256()
+        for entry in self.tables:
+            for part in entry if isinstance(entry, tuple) else (entry,):
+                array = np.ascontiguousarray(part if part is not None else [])
+                found.update(repr((array.shape, array.dtype)).encode() + array.tobytes())
+        return found.digest()
+
+    def check_beams(self, grown_for: bytes | None) -> None:
+        """Check that beams hold all that is strong with these materials and antennas.
+
+        Parameters
+        ----------
+        grown_for
+            See `Tracing`.
+
+        Raises
+        ------
+        ValueError
+            Where a loss limits them that was computed with others.
+        """
+        if grown_for is not None and grown_for != self.digest:
+            raise ValueError(
+                "beams that a loss limits are grown for the materials, antennas and frequency of "
+                "their trace: expected the same ones, or a new trace"
+            )
 
     @cached_property
     def shadow(self) -> Floats:

@@ -18,7 +18,6 @@ from raytrace.kernels.building import (
     image_heights,
 )
 from raytrace.kernels.edge_losses import no_edge_ways
-from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import Guard, no_guard
 from raytrace.kernels.losses import COSINE_BINS, UNLIMITED, Limits, LossLimit
 from raytrace.kernels.plan_view import GRAZING_M
@@ -54,8 +53,8 @@ class Tracing:
     guard
         What may end the kernels, with the memory that is left.
     grown_for
-        Materials, antennas and frequency by which a loss limits the beams; None without such a
-        limit: then they serve any.
+        Digest of the materials, antennas and frequency by which a loss limits the beams (see
+        `path_class.Evaluation`); None without such a limit: then they serve any.
     least, least_diffracted
         (n_receivers,) power below which paths are left out, those without and those with a
         diffraction [fraction of the transmitted]; empty where it is the same for all receivers.
@@ -73,23 +72,9 @@ class Tracing:
     partial_walls: Int32s
     intervals: Floats
     guard: Guard
-    grown_for: FieldTables | None = None
+    grown_for: bytes | None = None
     least: Floats = field(default_factory=lambda: np.zeros(0))
     least_diffracted: Floats = field(default_factory=lambda: np.zeros(0))
-
-    def check_evaluation(self, tables: FieldTables) -> None:
-        """Check that the beams hold all that is strong with these materials and antennas.
-
-        Raises
-        ------
-        ValueError
-            Where a loss limits the beams that was computed with others.
-        """
-        if self.grown_for is not None and not alike(self.grown_for, tables):
-            raise ValueError(
-                "beams that a loss limits are grown for the materials, antennas and frequency of "
-                "their trace: expected the same ones, or a new trace"
-            )
 
     def shared_by(self, threads: int) -> "Tracing":
         """Return the same, with the memory that is left for each of some threads."""
@@ -196,17 +181,6 @@ def with_receivers(tracing: Tracing, receivers: Floats) -> Tracing:
         least=np.zeros(0),
         least_diffracted=np.zeros(0),
     )
-
-
-def alike(one: FieldTables, other: FieldTables) -> bool:
-    """Whether two sets of tables have the same materials, antennas and frequency."""
-    return all(a is b or _is_same(a, b) for a, b in zip(one, other, strict=True))
-
-
-def _is_same(one: object, other: object) -> bool:
-    if isinstance(one, tuple) and isinstance(other, tuple):
-        return len(one) == len(other) and all(map(_is_same, one, other))
-    return np.array_equal(one, other)  # pyright: ignore[reportArgumentType]
 
 
 def _targets(scene: Scene, receivers: Floats) -> Targets:
