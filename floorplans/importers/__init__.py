@@ -22,7 +22,13 @@ from floorplans.importers.draft import (
     RawWall,
 )
 from floorplans.importers.formats import FORMATS, import_plan, read_draft
-from floorplans.importers.imported import DraftPlan, Imported, ImportRecord, UnusablePlanError
+from floorplans.importers.imported import (
+    DraftPlan,
+    DrawingPart,
+    Imported,
+    ImportRecord,
+    UnusablePlanError,
+)
 from floorplans.importers.layer_file import layers_toml, read_layers
 from floorplans.importers.page import import_page
 
@@ -31,6 +37,7 @@ __all__ = [
     "Assumption",
     "Draft",
     "DraftPlan",
+    "DrawingPart",
     "ImportOptions",
     "ImportRecord",
     "Imported",

@@ -23,6 +23,10 @@ _MAX_SINE = sin(radians(20.0))
 """Sine of the largest angle between an opening and its wall."""
 
 
+Box = tuple[float, float, float, float]
+"""(x_min, y_min, x_max, y_max)."""
+
+
 @dataclass(frozen=True)
 class ImportOptions:
     """What the user specifies; None uses the file's value or, without one, a default.
@@ -54,6 +58,9 @@ class ImportOptions:
         Keep the drawing's axes where most walls stand at an angle to them.
     close_gaps_m : float or None
         Gaps in the outline up to this width are closed [m]; by default 8.
+    region : (float, float, float, float) or None
+        Only what lies in it is imported: (x_min, y_min, x_max, y_max) in the file's coordinates
+        and unit; in metres from the origin, where the file's are longitude and latitude.
     layers : mapping of str to str
         Layer, class or type of the file -> KIND or KIND:MATERIAL; overrides the defaults.
     """
@@ -72,6 +79,7 @@ class ImportOptions:
     tolerance_m: float | None = None
     keep_axes: bool = False
     close_gaps_m: float | None = None
+    region: Box | None = None
     layers: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
@@ -229,6 +237,8 @@ class Draft:
         Of a robot's map.
     original : Original or None
         What the file shows, in the coordinates of the walls.
+    unit_name, unit_m : str, float
+        Unit of the file's coordinates, where those are the draft's, and its length [m].
     """
 
     name: str
@@ -248,3 +258,5 @@ class Draft:
     closed: tuple[LineString, ...] = ()
     known: KnownPixels | None = None
     original: Original | None = None
+    unit_name: str = "m"
+    unit_m: float = 1.0

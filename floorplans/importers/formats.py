@@ -13,7 +13,8 @@ from floorplans.errors import PlanError
 from floorplans.importers.assembly.assemble import assemble
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported, UnusablePlanError
-from floorplans.importers.own_axes import oblique_deg, placed, turned
+from floorplans.importers.own_axes import frame_in, oblique_deg, placed, turned
+from floorplans.importers.parts import Made, with_parts, within
 from floorplans.importers.progress import Progress, Report, Step, no_report, reporter
 from floorplans.plan import FloorPlan
 
@@ -153,16 +154,24 @@ def import_plan(
         report(Step.DRAFT_READ)
         if isinstance(drafted, FloorPlan):
             return Imported.from_plan(drafted, options, path.name)
+        if options.region is not None:
+            drafted = within(drafted, options.region)
         turn_deg = 0.0 if options.keep_axes else oblique_deg(drafted.walls)
         own = turned(drafted, turn_deg) if turn_deg else drafted
         try:
-            return placed(assemble(own, options, path.name, report), drafted, turn_deg)
+            return _in_drawing(assemble(own, options, path.name, report), drafted, turn_deg)
         except UnusablePlanError as error:
-            raise error.with_draft(placed(error.draft, drafted, turn_deg)) from None
+            raise error.with_draft(_in_drawing(error.draft, drafted, turn_deg)) from None
     except PlanError as error:
         raise error.located(str(path)) from error
     except GEOSException as error:
         raise PlanError(f"its geometry makes no plan: {error}", origin=str(path)) from error
+
+
+def _in_drawing(imported: Made, draft: Draft, turn_deg: float) -> Made:
+    """Add to a plan its place in the drawing, and what else is drawn there."""
+    frame = frame_in(imported, draft, turn_deg)
+    return with_parts(placed(imported, draft, turn_deg), draft, frame)
 
 
 def read_draft(path: Path, options: ImportOptions, report: Report = no_report) -> Draft | FloorPlan:

@@ -5,13 +5,38 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from floorplans.errors import Place, PlanError
-from floorplans.importers.draft import Assumption, ImportOptions, LayerUse, Origin
+from floorplans.importers.draft import Assumption, Box, ImportOptions, LayerUse, Origin
 from floorplans.importers.original import Original
 from floorplans.plan import FloorPlan
 from floorplans.repair.walls import Change
 from floorplans.toml.writer import dumps
 from floorplans.unchecked import UncheckedPlan
 from floorplans.walls import Point
+
+
+@dataclass(frozen=True)
+class DrawingPart:
+    """A drawing on a sheet with several.
+
+    Attributes
+    ----------
+    bounds : (float, float, float, float)
+        (x_min, y_min, x_max, y_max), a little wider than the walls [unit of the file].
+    n_walls : int
+        Pieces of wall that were drawn.
+    is_taken : bool
+        Whether the plan is of this one.
+    """
+
+    bounds: Box
+    n_walls: int
+    is_taken: bool
+
+    @property
+    def corners(self) -> str:
+        """Two opposite corners."""
+        x_min, y_min, x_max, y_max = self.bounds
+        return f"({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g})"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +62,8 @@ class ImportRecord:
         What the user should look at, one sentence each.
     original : Original or None
         What the file shows, in the plan's coordinates.
+    parts : tuple of DrawingPart
+        The separate drawings of a sheet that holds several.
     """
 
     plan: UncheckedPlan
@@ -48,6 +75,7 @@ class ImportRecord:
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     original: Original | None = None
+    parts: tuple[DrawingPart, ...] = ()
 
     @property
     def report(self) -> tuple[str, ...]:

@@ -93,6 +93,15 @@ def _affine(frame: PlanFrame) -> Affine:
     return ((a, b, 0.0), (c, d, 0.0))
 
 
+def frame_in(imported: ImportRecord, draft: Draft, angle_deg: float) -> PlanFrame:
+    """Position and rotation of a plan, made from a turned draft, in the draft as it was read."""
+    if draft.origin is not None:
+        return PlanFrame(0.0, 0.0, angle_deg)
+    own = np.array([(imported.origin.x, imported.origin.y)])
+    x, y = PlanFrame(0.0, 0.0, angle_deg).to_drawing(own)[0].tolist()
+    return PlanFrame(x, y, angle_deg)
+
+
 def placed(imported: Made, draft: Draft, angle_deg: float) -> Made:
     """Add to a plan its place in the drawing and on the Earth.
 
@@ -105,10 +114,8 @@ def placed(imported: Made, draft: Draft, angle_deg: float) -> Made:
     angle_deg : float
         By which it was turned.
     """
-    corner = np.zeros(2)
-    if draft.origin is None:
-        own = np.array([(imported.origin.x, imported.origin.y)])
-        corner = PlanFrame(0.0, 0.0, angle_deg).to_drawing(own)[0]
+    frame = frame_in(imported, draft, angle_deg)
+    corner = np.array([frame.x_m, frame.y_m])
     plan = imported.plan
     if draft.georeference is not None:
         plan = replace(plan, origin=_moved(draft.georeference, corner, angle_deg))

@@ -1,5 +1,7 @@
 """The options of ``rssnav plan import``."""
 
+from collections.abc import Sequence
+from math import isfinite
 from pathlib import Path
 from typing import Annotated
 
@@ -97,6 +99,14 @@ CloseGaps = Annotated[
         show_default=f"{CLOSED_GAP_M:g}",
     ),
 ]
+Region = Annotated[
+    str | None,
+    typer.Option(
+        metavar="X0,Y0,X1,Y1",
+        help="Import only what lies between these corners, in the file's unit.",
+        show_default="everything",
+    ),
+]
 Layer = Annotated[
     list[str] | None,
     typer.Option(
@@ -140,15 +150,25 @@ def source_of(text: str | None) -> tuple[float, float, float] | None:
     return (x, y, z)
 
 
-def _numbers(text: str, names: str, option: str) -> tuple[float, ...]:
+def region_of(text: str | None) -> tuple[float, float, float, float] | None:
+    """Read --region."""
+    if text is None:
+        return None
+    x0, y0, x1, y1 = _numbers(text, ("x0", "y0", "x1", "y1"), "--region", "the file's unit")
+    return (x0, y0, x1, y1)
+
+
+def _numbers(
+    text: str, names: Sequence[str], option: str, unit: str = "metres"
+) -> tuple[float, ...]:
     """Read "1.5,2,1" as one number for each letter of `names`."""
     try:
         numbers = tuple(float(part) for part in text.split(","))
     except ValueError:
         numbers = ()
-    if len(numbers) != len(names):
+    if len(numbers) != len(names) or not all(map(isfinite, numbers)):
         shape = ",".join(names).upper()
-        raise typer.BadParameter(f"{text!r} is not {shape} in metres.", param_hint=option)
+        raise typer.BadParameter(f"{text!r} is not {shape} in {unit}.", param_hint=option)
     return numbers
 
 

@@ -15,6 +15,7 @@ from rssnav.cli.import_options import (
     Level,
     Name,
     Output,
+    Region,
     Replace,
     ReportPage,
     SaveLayers,
@@ -27,6 +28,7 @@ from rssnav.cli.import_options import (
     WallThickness,
     WallTolerance,
     layers_of,
+    region_of,
     source_of,
     start_of,
 )
@@ -69,6 +71,7 @@ def import_file(
     tolerance: WallTolerance = None,
     keep_axes: KeepAxes = False,
     close_gaps: CloseGaps = None,
+    region: Region = None,
     layer: Layer = None,
     layers: Layers = None,
     save_layers: SaveLayers = None,
@@ -101,6 +104,7 @@ def import_file(
         tolerance_m=tolerance,
         keep_axes=keep_axes,
         close_gaps_m=close_gaps,
+        region=region_of(region),
         layers=layers_of(layer, layers),
     )
     if output.exists() and not force:

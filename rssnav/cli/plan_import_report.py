@@ -27,6 +27,7 @@ def print_import_json(imported: Imported, output: Path) -> None:
             "assumed": [asdict(assumption) for assumption in imported.assumed],
             "changes": [asdict(change) for change in imported.changes],
             "warnings": imported.warnings,
+            "parts": [asdict(part) for part in imported.parts],
             "notes": imported.notes,
         }
     )
@@ -56,6 +57,10 @@ def print_warnings(imported: ImportRecord) -> None:
     """Write what the user should look at to standard error."""
     for sentence in imported.warnings:
         print_error(f"warning: {sentence}")
+    other = next((part for part in imported.parts if not part.is_taken), None)
+    if other is not None:
+        corners = ",".join(f"{number:g}" for number in other.bounds)
+        note(f"import another drawing of the sheet with --region={corners}")
 
 
 def _print_layer_option(imported: Imported) -> None:

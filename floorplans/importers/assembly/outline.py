@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import dist
+from math import dist, inf
 
 import numpy as np
 import shapely
@@ -34,6 +34,10 @@ _ENOUGH = 0.02
 """Wider gaps are closed only if that encloses this additional fraction of the walls' length."""
 _MOSTLY_OPEN = 0.5
 """Fraction of the walls' length below which what is enclosed is a room, not the building."""
+_OPEN_REST = 0.1
+"""Fraction of the length of walls that is no closed building, of what is one nevertheless."""
+_CORRIDOR_M = 4.0
+"""Buildings that are closed by themselves are one only across gaps up to this width [m]."""
 _NARROW_M = 0.3
 """A narrower region is a gap between walls, not a building [m]."""
 
@@ -154,15 +158,16 @@ def _enclosed_region(
         return closed
     outer = network if closed is None or given is not None else network.around(closed.polygon)
     links = gap_links(outer.lines, max(limit_m, CLOSED_GAP_M))
-    found = _best_region(lines, outer, links, given, limit_m)
+    corridor_m = inf if is_strict or given is not None else _CORRIDOR_M
+    found = _best_region(lines, outer, links, given, (limit_m, corridor_m))
     if is_strict and limit_m < CLOSED_GAP_M:
-        wider = _best_region(lines, outer, links, given, CLOSED_GAP_M)
+        wider = _best_region(lines, outer, links, given, (CLOSED_GAP_M, inf))
         if wider and (found is None or wider.enclosed > found.enclosed + _ENOUGH):
             return wider
     if found and (found.enclosed > _MOSTLY_OPEN or _is_closed(network, links, found)):
         return found
     links = gap_links(outer.lines, max(_GAPS_M))
-    wider = _best_region(lines, outer, links, given, max(_GAPS_M))
+    wider = _best_region(lines, outer, links, given, (max(_GAPS_M), inf))
     if found and not (wider and wider.enclosed > _MOSTLY_OPEN):
         return found
     return wider or _hull(lines)
@@ -173,11 +178,17 @@ def _best_region(
     outer: Network,
     links: NDArray[np.float64],
     given: Polygon | None,
-    limit_m: float,
+    limits_m: tuple[float, float],
 ) -> _Region | None:
-    """Region with most of the walls for the least width of gaps; None if there is none."""
+    """Region with most of the walls for the least width of gaps; None if there is none.
+
+    The limits are that of all gaps, and of those between buildings that are closed by themselves.
+    """
+    limit_m, corridor_m = limits_m
     best: _Region | None = None
     for gap_m in [*(width for width in _GAPS_M if width < limit_m), limit_m]:
+        if gap_m > corridor_m and best and _are_closed(outer, best.polygon):
+            break
         is_short = link_lengths(links) <= gap_m
         outer, links = outer.with_links(links[is_short]), links[~is_short]
         region = _region(lines, outer, given)
@@ -222,6 +233,16 @@ def _is_closed(network: Network, links: NDArray[np.float64], region: _Region) ->
     shapely.prepare(wide)
     lengths_m = shapely.length(lines)
     return float(lengths_m[shapely.covers(wide, lines)].sum()) > _MOSTLY_OPEN * lengths_m.sum()
+
+
+def _are_closed(outer: Network, region: Polygon) -> bool:
+    """Whether nearly all walls outside a region are in or on others that are closed."""
+    lines = not_within(outer.lines, region.buffer(2 * ON_EDGE_M))
+    wide = shapely.coverage_union_all(outer.faces()).buffer(ON_EDGE_M)
+    shapely.prepare(wide)
+    lengths_m = shapely.length(lines)
+    closed_m = float(lengths_m[shapely.covers(wide, lines)].sum())
+    return closed_m > (1 - _OPEN_REST) * lengths_m.sum()
 
 
 def _hull(lines: Lines) -> _Region:

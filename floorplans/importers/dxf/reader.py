@@ -122,6 +122,8 @@ def read_dxf(path: Path, options: ImportOptions, report: Report = no_report) -> 
             *unmatched(options.layers, content.n_objects),
         ),
         original=layers.original(metric),
+        unit_name=unit,
+        unit_m=UNITS[unit],
     )
 
 

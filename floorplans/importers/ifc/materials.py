@@ -67,7 +67,8 @@ class Materials:
         Returns
         -------
         material : str or None
-            A built-in one or one of `own`; None if no layer has a known name.
+            A built-in one or one of `own`; None if no layer has a known name, and if all are
+            cavities or films.
         thickness_m : float or None
             None if the wall has no layers.
         """
@@ -76,7 +77,9 @@ class Materials:
             return self._first_solid(wall), None
         total_m = sum(layer.thickness_m for layer in layers)
         found = [self._known(layer.names) for layer in layers]
-        if not any(material not in (None, CAVITY) for material in found):
+        if CAVITY not in found and not any(found):
+            return None, total_m
+        if not any(_is_solid(layer, m) for layer, m in zip(layers, found, strict=True)):
             return None, total_m
         stack = self._stack(layers, found)
         if len(stack) == 1:
@@ -187,6 +190,11 @@ class Materials:
         taken = {own.name for own in self._own.values()}
         others = (f"{name}_{number}" for number in range(2, len(taken) + 3))
         return next(free for free in (name, *others) if free not in taken)
+
+
+def _is_solid(layer: Layer, material: str | None) -> bool:
+    """Whether a layer of a known or unknown material is neither a cavity nor a film."""
+    return material != CAVITY and (material is not None or layer.thickness_m > FILM_M)
 
 
 def _material_of(element: Entity) -> Entity | None:

@@ -13,8 +13,9 @@ from floorplans.importers.page.shapes import (
     marks_of,
     opening_paths,
     picture_of,
-    view_of,
+    plan_view,
     wall_paths,
+    whole_view,
 )
 from floorplans.repair.geometry import Change
 
@@ -50,10 +51,11 @@ def import_page(record: ImportRecord) -> str:
     str
         HTML.
     """
-    view = view_of(record.plan)
     faults = record.faults if isinstance(record, DraftPlan) else ()
     gaps = record.gaps if isinstance(record, DraftPlan) else ()
     original = record.original
+    view = whole_view(record.plan, original)
+    near = plan_view(record.plan)
     counts = Counter(change.kind for change in record.changes)
     return (
         _environment()
@@ -62,11 +64,12 @@ def import_page(record: ImportRecord) -> str:
             record=record,
             title=f"Import of {record.source_file}",
             view=view,
+            near=near,
             picture=picture_of(original),
             drawn=drawn_paths(original),
             walls=wall_paths(record.plan),
             openings=opening_paths(record.plan),
-            marks=marks_of(record.plan, record.changes, gaps, view),
+            marks=marks_of(record.plan, record.changes, gaps, near),
             faults=[str(fault) for fault in faults],
             materials=_materials(record),
             listed=[(text, _rows(record, kind)) for kind, text in _KINDS.items() if counts[kind]],

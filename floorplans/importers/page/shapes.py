@@ -12,13 +12,16 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from floorplans.importers.original import Original
+from floorplans.importers.original import DrawnPicture, Original
 from floorplans.repair.geometry import Change
 from floorplans.unchecked import UncheckedPlan
 from floorplans.walls import Point
 
 _OPENING_COLOURS = {"door": "#b35c00", "window": "#0077cc", "passage": "#2a8a2a"}
 _MOST_POINTS = 300_000
+_MARGIN = 0.06
+_MOST_TIMES = 20.0
+"""Times the plan's size up to which the drawing is shown: beyond lie stray points."""
 
 
 @dataclass(frozen=True)
@@ -67,10 +70,35 @@ class Mark:
     text: str
 
 
-def view_of(plan: UncheckedPlan) -> View:
+def plan_view(plan: UncheckedPlan) -> View:
     """Return the plan with a margin."""
-    x_min, y_min, x_max, y_max = plan.bounds
-    margin = 0.06 * max(x_max - x_min, y_max - y_min)
+    return _with_margin(np.array(plan.bounds))
+
+
+def whole_view(plan: UncheckedPlan, original: Original | None) -> View:
+    """Return the plan and all that is drawn, but nothing very far away, with a margin."""
+    own = np.array(plan.bounds)
+    reach = _MOST_TIMES * max(own[2] - own[0], own[3] - own[1]) * np.array([-1, -1, 1, 1])
+    limits = own + reach
+    drawn = [shapely.total_bounds(layer.geometry) for layer in original.layers] if original else []
+    if original is not None and original.picture is not None:
+        drawn.append(_bounds_of(original.picture))
+    shown = [own, *(np.clip(box, limits[[0, 1, 0, 1]], limits[[2, 3, 2, 3]]) for box in drawn)]
+    boxes = np.array([box for box in shown if np.isfinite(box).all()])
+    return _with_margin(np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)]))
+
+
+def _bounds_of(picture: DrawnPicture) -> NDArray[np.float64]:
+    """Bounds of a picture (x_min, y_min, x_max, y_max) [m]."""
+    columns, rows = picture.size
+    corners = np.array([(0, 0, 1), (columns, 0, 1), (columns, rows, 1), (0, rows, 1)])
+    points = corners @ np.array(picture.to_m).T
+    return np.concatenate([points.min(axis=0), points.max(axis=0)])
+
+
+def _with_margin(box: NDArray[np.float64]) -> View:
+    x_min, y_min, x_max, y_max = box.tolist()
+    margin = _MARGIN * max(x_max - x_min, y_max - y_min)
     return View(
         x_min - margin, y_min - margin, x_max - x_min + 2 * margin, y_max - y_min + 2 * margin
     )

@@ -202,10 +202,19 @@ def test_unknown_layers_are_assumed_and_reported_by_name(tmp_path) -> None:
     assert "a thin film" in whys['material "Membrane X"']
 
 
-def test_walls_of_unknown_layers_get_the_default(tmp_path) -> None:
-    _, wall, layers = partitioned(
-        tmp_path, lambda model, wall: model.set_layers(wall, ("Foo", 0.1), ("Air", 0.024))
-    )
+def test_walls_of_unknown_layers_keep_their_cavities(tmp_path) -> None:
+    rows = (("Foo", 0.013), ("Air", 0.05), ("Bar", 0.24), ("Film", 0.001), ("Foo", 0.013))
+    imported, _, layers = partitioned(tmp_path, lambda model, wall: model.set_layers(wall, *rows))
+    solid = ("plasterboard", 0.013)
+    assert layers == (solid, ("air", 0.05), ("brick", 0.24), ("air", 0.001), solid)
+    assumed = {a.key: a.value for a in imported.assumed}
+    assert assumed['material "Foo"'] == "plasterboard"
+    assert assumed['material "Bar"'] == "brick"
+
+
+@pytest.mark.parametrize("rows", [[("Foo", 0.1), ("Bar", 0.024)], [("Air", 0.1), ("Film", 0.001)]])
+def test_walls_without_a_known_layer_or_a_solid_one_get_the_default(tmp_path, rows) -> None:
+    _, wall, layers = partitioned(tmp_path, lambda model, wall: model.set_layers(wall, *rows))
     assert (wall.material, layers) == ("plasterboard", None)
 
 

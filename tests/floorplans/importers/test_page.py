@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
@@ -69,6 +70,28 @@ def test_the_drawing_lies_under_the_plan():
     drawn = points_of(page, None)
     assert {tuple(p) for p in walls.round(3)} <= {tuple(p) for p in drawn.round(3)}
     assert (3.0, 2.0) in {tuple(p) for p in drawn}
+
+
+def shown(page: Reader) -> tuple[float, float, float, float]:
+    """The part of the plane that is shown first (x_min, y_min, x_max, y_max) [m]."""
+    (box_,) = [a["viewbox"] for tag, a in page.tags if tag == "svg"]
+    x, top, width, height = map(float, (box_ or "").split())
+    return x, -top - height, x + width, -top
+
+
+@pytest.mark.parametrize(("far_m", "seen_m"), [(40.0, 40.0), (90_000.0, 300.0)])
+def test_the_page_shows_the_whole_drawing_but_no_stray_point(far_m: float, seen_m: float):
+    fence = DrawnLayer(
+        "FENCE", "left out", False, MultiLineString([[(100, 50), (100 + far_m, 70)]])
+    )
+    original = replace(drawing(), layers=(*drawing().layers, fence))
+    draft = Draft("hall", tuple(ring(100, 50, 112, 58)), original=original)
+    x0, y0, x1, y1 = shown(Reader(import_page(assemble(draft, ImportOptions(), "hall.dxf"))))
+    assert x0 < 0
+    assert y0 < 0
+    assert y1 > 20
+    assert x1 > min(far_m, 12)
+    assert x1 < 2 * seen_m
 
 
 def test_what_was_left_out_assumed_and_closed_is_listed():
