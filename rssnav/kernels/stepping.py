@@ -120,6 +120,14 @@ class Sensor(NamedTuple):
     rows: Rows
 
 
+class Steady(NamedTuple):
+    """A sensor of one mode whose readings never fluctuate: a lookup takes the place of drawing."""
+
+    rss_dbm: NDArray[np.float64]  # (S,) as read
+    found: NDArray[np.bool_]  # (S,)
+    task: TaskTables
+
+
 class Flight(NamedTuple):
     """A flight in progress."""
 
@@ -292,3 +300,24 @@ def fly(sensor: Sensor, flight: Flight, action: int, arrived: int) -> tuple[floa
         return reward, FOUND
     over = whole[SECONDS] >= task.max_seconds or real[ENERGY_J] >= task.budget_j
     return reward, TRUNCATED if over else RUNNING
+
+
+@jit(fused=True)
+def fly_steady(steady: Steady, flight: Flight, arrived: int) -> tuple[float, int]:
+    """`fly` where nothing is drawn and energy does not count."""
+    whole, task = flight.whole, steady.task
+    rise_db = steady.rss_dbm[arrived] - steady.rss_dbm[whole[CELL]]
+    found = steady.found[arrived]
+    whole[CELL] = arrived
+    whole[SECONDS] += 1
+    reward = _reward(task, arrived, rise_db, 1, 0.0, found)
+    if found:
+        return reward, FOUND
+    return reward, TRUNCATED if whole[SECONDS] >= task.max_seconds else RUNNING
+
+
+@jit(fused=True)
+def begin_steady(moves: Moves, flight: Flight) -> None:
+    """`begin` where readings and modes are not drawn."""
+    flight.whole[CELL] = moves.starts[drawn(moves.start_cumulative, flight.generator)]
+    flight.whole[SECONDS] = 0

@@ -9,7 +9,16 @@ from numpy.typing import NDArray
 
 from rssnav.discrete_states import ExactStates, IntervalStates, StateRule, heard
 from rssnav.kernels.reading_states import BY_CELL, INTERVALS, TOLERANCE
-from rssnav.kernels.stepping import Doors, Modes, Moves, Receiver, Rows, Sensor, TaskTables
+from rssnav.kernels.stepping import (
+    Doors,
+    Modes,
+    Moves,
+    Receiver,
+    Rows,
+    Sensor,
+    Steady,
+    TaskTables,
+)
 from rssnav.missions.mission import Mission
 from rssnav.missions.modes import ModeProcess
 from rssnav.missions.observation import Observation
@@ -97,6 +106,16 @@ def sensor_tables(mission: Mission, task: Task, observation: Observation) -> Sen
     headings = 9 if rows.heading else 1
     n_rows = memories * headings * rows.n_readings * rows.n_cells
     return SensorTables(sensor, n_bins, n_initial, n_rows)
+
+
+def steady_tables(mission: Mission, task: Task, observation: Observation) -> Steady | None:
+    """Tables for one mode in which nothing is drawn and energy does not count; else None."""
+    drawn = observation.fluctuation.sigma_db > 0.0 or mission.n_modes > 1
+    confirms = isinstance(task.goal, ReadingAbove) and task.goal.confirmations > 1
+    if drawn or confirms or task.energy is not None:
+        return None
+    rss_dbm = heard(np.ascontiguousarray(mission.rss_dbm[0]), observation.sensitivity_dbm)
+    return Steady(rss_dbm, np.ascontiguousarray(task.goal.cells(mission)[0]), _task(mission, task))
 
 
 def _modes(modes: ModeProcess, layout_of_mode: NDArray[np.int64]) -> Modes:

@@ -1,0 +1,178 @@
+"""Keyword options of the environments -> mission, task, observation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Literal
+
+import floorplans
+from floorplans import FloorPlan
+from rssnav.arguments import require
+from rssnav.discrete_states import AGENT_SENSITIVITY_DBM, Fluctuation, IntervalStates
+from rssnav.maps import make_map
+from rssnav.missions import (
+    Mission,
+    ModeProcess,
+    MultirotorEnergy,
+    Observation,
+    ReadingAbove,
+    Task,
+    Within,
+)
+from rssnav.missions.places import mission_of_places, spread_places
+from rssnav.presets import PRESETS, default_preset
+from rssnav.world import GridWorld
+
+ObservationKind = Literal["rss", "history", "cell", "dict"]
+KINDS = ("rss", "history", "cell", "dict")
+_MAPS_KEPT = 8
+
+
+@dataclass(frozen=True, kw_only=True)
+class EnvOptions:
+    """Options of all environments.
+
+    Parameters
+    ----------
+    plan : str
+        A built-in plan's name, a TOML file, or "office" for a generated office.
+    seed_of_plan : int
+        Of a generated office.
+    speed : int
+        Cells moved along an axis in one step.
+    observation : {"rss", "history", "cell", "dict"}
+        The latest reading, the latest ``history`` readings, the cell's number, or a dictionary of
+        reading, position and mask of actions.
+    history : int
+        Readings in a history, the latest last.
+    reward : {"rss", "closeness", "none"}
+        See `rssnav.missions.Task`, also for the next four.
+    goal_reward, per_second, per_kj : float
+        Reward for finding the transmitter, of a second, of a kilojoule.
+    battery_kj : float or None
+        Energy after which an episode is truncated; None for no limit.
+    max_steps : int
+        Seconds after which it is truncated.
+    goal_dbm : float or None
+        Reading above which the transmitter is found [dBm]; None to find it within ``goal_m``.
+    goal_m : float
+        Distance below which it is found if ``goal_dbm`` is None [m].
+    confirmations : int
+        Readings whose mean must exceed ``goal_dbm``.
+    sigma_db, correlation : float
+        Fluctuation of readings: standard deviation and correlation in time.
+    sensitivity_dbm : float
+        Weakest reading that is a signal [dBm].
+    places : int
+        Places of the transmitter; the plan's own is the first, the others are spread over it.
+    jump_probability : float
+        Probability that it moves to another place, per second.
+    hover : bool
+        Whether a ninth action stays in the cell for one more reading.
+    """
+
+    plan: str | FloorPlan
+    seed_of_plan: int = 0
+    speed: int = 1
+    observation: ObservationKind = "rss"
+    history: int = 8
+    reward: Literal["rss", "closeness", "none"] = "rss"
+    goal_reward: float = 1000.0
+    per_second: float = 0.0
+    per_kj: float = 0.0
+    battery_kj: float | None = None
+    max_steps: int = 20_000
+    goal_dbm: float | None = None
+    goal_m: float = 2.0
+    confirmations: int = 1
+    sigma_db: float = 0.0
+    correlation: float = 0.0
+    sensitivity_dbm: float = AGENT_SENSITIVITY_DBM
+    places: int = 1
+    jump_probability: float = 0.0
+    hover: bool = False
+
+    def __post_init__(self) -> None:
+        require(self.observation in KINDS, "observation", self.observation, " or ".join(KINDS))
+        require(self.history >= 1, "history", self.history, "at least 1")
+        require(self.places >= 1, "places", self.places, "at least 1")
+
+    @classmethod
+    def of(cls, **options: Any) -> EnvOptions:
+        """Options from keywords.
+
+        Raises
+        ------
+        TypeError
+            For an unknown keyword, with those that there are, or without a plan.
+        """
+        known = cls.__dataclass_fields__
+        for name in options:
+            if name not in known:
+                raise TypeError(f"{name}: no such option; there are {', '.join(known)}")
+        if "plan" not in options:
+            raise TypeError("plan: missing; give a built-in plan's name, a TOML file or 'office'")
+        return cls(**options)
+
+    def floor_plan(self) -> FloorPlan:
+        """Load or generate the plan."""
+        if isinstance(self.plan, FloorPlan):
+            return self.plan
+        if self.plan == "office":
+            return floorplans.generate("office", self.seed_of_plan, area_m2=600.0)
+        return floorplans.load(self.plan)
+
+    def mission(self) -> Mission:
+        """World of these options; its maps are computed once in a process."""
+        return _mission(
+            self.floor_plan(), self.preset(), self.speed, self.places, self.jump_probability
+        )
+
+    def preset(self) -> Literal["paper", "building"]:
+        """Limits of the traces."""
+        return default_preset(self.plan) if isinstance(self.plan, str) else "building"
+
+    def task(self) -> Task:
+        """Aim of these options."""
+        energy = MultirotorEnergy() if self.per_kj != 0.0 or self.battery_kj is not None else None
+        level = self.goal_dbm
+        if level is None and self.preset() == "paper" and self.places == 1:
+            level = -21.0  # the paper's
+        return Task(
+            goal=Within(self.goal_m) if level is None else ReadingAbove(level, self.confirmations),
+            reward=self.reward,
+            goal_reward=self.goal_reward,
+            per_second=self.per_second,
+            per_kj=self.per_kj,
+            energy=energy,
+            battery_kj=float("inf") if self.battery_kj is None else self.battery_kj,
+            max_steps=self.max_steps,
+        )
+
+    def senses(self) -> Observation:
+        """Senses of these options; environments make their own observation of them."""
+        return Observation(
+            IntervalStates((0.0,)),
+            cell=self.observation == "cell",
+            fluctuation=Fluctuation(self.sigma_db, self.correlation),
+            sensitivity_dbm=self.sensitivity_dbm,
+        )
+
+
+@lru_cache(_MAPS_KEPT)
+def _mission(
+    plan: FloorPlan,
+    preset: Literal["paper", "building"],
+    speed: int,
+    places: int,
+    jump_probability: float,
+) -> Mission:
+    config = PRESETS[preset].config
+    antenna = PRESETS[preset].antenna
+    if places == 1:
+        radio_map = make_map(plan, config=config, receive_antenna=antenna)
+        return GridWorld.from_map(plan, radio_map, speed).mission()
+    spread = spread_places(plan, places, speed)
+    mission = mission_of_places(plan, spread, speed, config=config, receive_antenna=antenna)
+    return mission.with_modes(ModeProcess.jumping(places, jump_probability))

@@ -1,0 +1,136 @@
+"""Missions whose transmitter may be at several places, for which a map each is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from floorplans import FloorPlan
+from raytrace import Antenna, Grid, HalfWaveDipole, TraceConfig, Transmitter
+from rssnav.arguments import require
+from rssnav.maps import CELL_SIZE_M, HEIGHT_M
+from rssnav.missions.layout import Layout, WorldError
+from rssnav.missions.mission import Mission
+from rssnav.missions.modes import ModeProcess
+from rssnav.progress import Progress
+from rssnav.transmitter_maps import make_transmitter_maps
+
+_BESIDE_M = np.array([0.2, 0.15])  # from a cell's centre, where 1 / D would be infinite
+
+
+def reachable_layout(plan: FloorPlan, speed: int = 1, cell_size_m: float = CELL_SIZE_M) -> Layout:
+    """Cells that can be reached from a plan's start, numbered row by row.
+
+    Raises
+    ------
+    WorldError
+        When the start is not in a cell that can be left.
+    """
+    grid = Grid.over(plan.bounds, cell_size_m, HEIGHT_M)
+    whole = Layout.of_plan(plan, grid, speed)
+    start = whole.nearest(*plan.require_start())
+    kept = np.sort(whole.reachable(start))
+    if kept.size < 2:
+        raise WorldError(f"plan {plan.name!r}: at speed {speed} the start cannot be left")
+    return whole.part(kept)
+
+
+def spread_places(
+    plan: FloorPlan, n: int, speed: int = 1
+) -> tuple[tuple[float, float, float], ...]:
+    """Places of the transmitter, far from each other and from the start: the plan's own first.
+
+    Each is the one farthest from those before; none is nearer than 4 m to the start.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        With source and start; the height is the source's.
+    n : int
+        Number of places.
+    speed : int
+        The places can be reached at this speed.
+    """
+    require(n >= 1, "n", n, "at least 1")
+    layout = reachable_layout(plan, speed)
+    x, y, z = plan.require_source()
+    candidates = layout.position + _BESIDE_M
+    places = [(x, y, z)]
+    nearest = np.hypot(*(candidates - (x, y)).T)
+    nearest[np.hypot(*(candidates - plan.require_start()).T) < 4.0] = -1.0
+    for _ in range(n - 1):
+        farthest = int(np.argmax(nearest))
+        if nearest[farthest] <= 0.0:
+            raise ValueError(f"places: {n} are more than plan {plan.name!r} has room for")
+        px, py = candidates[farthest].tolist()
+        places.append((px, py, z))
+        nearest = np.minimum(nearest, np.hypot(*(candidates - (px, py)).T))
+    return tuple(places)
+
+
+def mission_of_places(
+    plan: FloorPlan,
+    places: Sequence[tuple[float, float, float]],
+    speed: int = 1,
+    *,
+    modes: ModeProcess | None = None,
+    config: TraceConfig | None = None,
+    receive_antenna: Antenna | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Mission:
+    """Mission of a transmitter at any of some places; the steps are found once for all.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        With a start.
+    places : sequence of (float, float, float)
+        Places [m], one a mode.
+    speed : int
+        Cells moved along an axis in one step.
+    modes : ModeProcess, optional
+        How it moves; by default a place is drawn for each episode.
+    config, receive_antenna, threads, progress
+        As for `rssnav.maps.make_map`. The transmitter has the same antenna as the receivers.
+    """
+    antenna = receive_antenna or HalfWaveDipole()
+    layout = reachable_layout(plan, speed)
+    senders = {
+        f"{k}": Transmitter(position=place, antenna=antenna) for k, place in enumerate(places)
+    }
+    maps = make_transmitter_maps(
+        plan,
+        senders,
+        config=config,
+        receive_antenna=antenna,
+        threads=threads,
+        progress=progress,
+    )
+    rss_dbm = np.stack([layout.on_cells(maps[name].rss_dbm) for name in senders])
+    return mission_of_fields(plan, (layout,), rss_dbm, places, modes)
+
+
+def mission_of_fields(
+    plan: FloorPlan,
+    layouts: tuple[Layout, ...],
+    rss_dbm: NDArray[np.float64],
+    places: Sequence[tuple[float, float, float]],
+    modes: ModeProcess | None = None,
+) -> Mission:
+    """Mission of layouts (one, or one a mode), a field (M, S) and a place for each mode."""
+    layout, n = layouts[0], len(places)
+    several = len(layouts) > 1
+    return Mission(
+        layouts=layouts,
+        layout_of_mode=np.arange(n, dtype=np.int64) * several,
+        rss_dbm=rss_dbm,
+        distance_m=np.stack([layout.distance_m(x, y) for x, y, _ in places]),
+        modes=modes or ModeProcess.steady(n),
+        starts=np.array([layout.nearest(*plan.require_start())], dtype=np.int32),
+        start_probability=np.ones(1),
+        source=np.array([place[:2] for place in places], dtype=np.float64),
+        name=plan.name,
+    )
