@@ -7,7 +7,7 @@ import numpy as np
 from floorplans import FloorPlan, PlanMaterial
 from raytrace import Dielectric, Layer, Layered, Material, Scene, SceneError
 from raytrace.radio.itu import DEFAULT_EDITION
-from raytrace.radio.materials import find_material
+from raytrace.radio.materials import Slab, find_material
 
 _NOT_OF_THE_SCENE = {
     "name",
@@ -86,6 +86,19 @@ class PlanScene:
             for field in fields(plan)
             if field.name not in _NOT_OF_THE_SCENE
         )
+
+
+def slab_of(plan: FloorPlan, name: str, thickness_m: float, edition: str | None = None) -> Slab:
+    """Return what the tracer makes of a sheet of a plan's walls.
+
+    Raises
+    ------
+    SceneError
+        For an unknown material.
+    """
+    edition = edition_of(plan, edition)
+    own = _own_materials(plan, edition)
+    return Slab.of(_material(plan, own, name, thickness_m), thickness_m, edition)
 
 
 def _material(

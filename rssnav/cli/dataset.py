@@ -19,7 +19,7 @@ MAX_WORKERS = 10_000
 
 def add_to(parent: typer.Typer) -> None:
     """Add the group ``dataset``."""
-    from rssnav.cli import dataset_look
+    from rssnav.cli import dataset_export, dataset_look
 
     group = typer.Typer(
         no_args_is_help=True,
@@ -38,6 +38,7 @@ def add_to(parent: typer.Typer) -> None:
         ),
     )(make)
     dataset_look.add_to(group)
+    dataset_export.add_to(group)
     parent.add_typer(group, name="dataset")
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from rssnav.datasets.errors import DatasetError
 from rssnav.datasets.plans import PlanSource
 
-SPLITS = ("train", "validation", "test")
+SPLITS: tuple[str, ...] = ("train", "validation", "test")
 
 
 @dataclass(frozen=True)

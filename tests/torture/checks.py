@@ -17,14 +17,18 @@ import floorplans
 from raytrace import RadioMap
 from raytrace.results.map_file import is_radio_map
 from rssnav import TrainingResult
+from rssnav.datasets.container import read_plan_file
+from rssnav.datasets.spec import load_spec
 from rssnav.experiments.search_store import read_search
 
 VOLATILE = ("_time_s", "_cpu_s", "cpu_s")
 """Ends of names of measured times, which no two runs share."""
 TIMED = re.compile("cpu|claim_verdict", re.IGNORECASE)
 """Words in columns and rows of tables with measured times; a claim may rest on one of them."""
-EXACT = (".toml", ".geojson", ".yaml", ".pgm", ".glb")
+EXACT = (".toml", ".geojson", ".yaml", ".pgm", ".glb", ".md", ".parquet")
 """Suffixes of files that are the same in every run."""
+OF_THE_RUN = ("lock", "journal.jsonl", "times.parquet")
+"""Files of a data set that say how it was made."""
 
 
 def files_in(folder: Path) -> set[str]:
@@ -48,6 +52,12 @@ def half_files(folder: Path) -> Iterator[str]:
 
 def _read(path: Path) -> None:
     match path.suffix:
+        case _ if path.name in OF_THE_RUN:
+            pass
+        case ".h5" if re.fullmatch(r"[a-z]+-[0-9]{6}\.h5", path.name):
+            read_plan_file(path)
+        case ".toml" if path.stem == "spec":
+            load_spec(path)
         case ".h5" if "-search-" in path.name:
             read_search(path)
         case ".h5":
@@ -81,6 +91,8 @@ def differences(found: Path, wanted: Path) -> Iterator[str]:
     yield from (f"{name} is litter" for name in sorted(files_in(found) - files_in(wanted)))
     for name in sorted(files_in(wanted) & files_in(found)):
         one, other = found / name, wanted / name
+        if one.name in OF_THE_RUN:
+            continue
         if one.suffix in EXACT and one.read_bytes() != other.read_bytes():
             yield f"{name} is different"
         if one.suffix == ".csv" and _rows(one) != _rows(other):

@@ -68,6 +68,8 @@ JOBS = {
     "plan export of two files": Job(("plan", "export", "room.toml", "-o", "grid.yaml")),
     "plan show": Job(("plan", "show", "room.toml", "-o", "plan.png")),
     "plan check": Job(("plan", "check", "misfit.toml", "--fix", "-o", "fixed.toml")),
+    "dataset": Job(("dataset", "make", "demo", "-o", "set", "--threads", "1"), kills=6),
+    "dataset on a cluster": Job(("dataset", "make", "demo", "-o", "set", "--workers", "2")),
     "maps": Job(("maps", "--out", "results/maps"), kills=6),
     "experiments": Job(("experiments", "--runs", "1", *_STUDY), ("maps",), kills=6),
     "noise": Job(("experiments", "noise", *_STUDY), ("maps",), kills=6),

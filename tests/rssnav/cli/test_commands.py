@@ -41,6 +41,8 @@ COMMANDS = (
     ("dataset", "check"),
     ("dataset", "info"),
     ("dataset", "show"),
+    ("dataset", "export"),
+    ("dataset", "baselines"),
     ("explore",),
     ("experiments",),
     ("report",),
