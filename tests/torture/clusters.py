@@ -1,7 +1,7 @@
-"""``python -m torture.clusters``: kill command, workers and scheduler of a data set at random moments.
+"""``python -m torture.clusters``: kill command, workers and scheduler of a data set, at random.
 
-After each series of kills the command runs once more, alone; the data set must have the same bits as
-one that was left alone.
+After each series of kills the command runs once more, alone; the data set must have the same bits
+as one that was left alone.
 """
 
 from __future__ import annotations
