@@ -230,7 +230,8 @@ class _Models:
         among = np.exp(-cdist(points[known], points[known]) / self.range_m)
         among[np.diag_indices_from(among)] += NUGGET
         towards = np.exp(-cdist(points, points[known]) / self.range_m)
-        return towards @ np.linalg.solve(among, excess[known])
+        weights = np.asarray(np.linalg.solve(among, excess[known]), dtype=np.float64)
+        return towards @ weights
 
     def _of_nearest(self, test: _Map) -> Floats:
         """Lay the training map that is most alike over a building; its mean where it has none."""
@@ -241,7 +242,7 @@ class _Models:
         column = np.abs(nearest.x[None] - at[:, :1]).argmin(axis=1)
         row = np.abs(nearest.y[None] - at[:, 1:]).argmin(axis=1)
         found = np.where(nearest.used, nearest.rss_dbm, nearest.values.mean())
-        return np.asarray(found[row, column], dtype=np.float64)
+        return np.asarray(found, dtype=np.float64)[row, column]
 
 
 def _least_squares(rows: Floats, values: Floats) -> Floats:

@@ -85,7 +85,7 @@ def kill_one(spec: Path, folder: Path, generator: random.Random) -> str:
         if victim == "worker":  # the command goes on with the other one and a new one
             making.wait(300)
         else:
-            making.wait(60)
+            making.wait(120)
         return victim
     finally:
         making.kill()

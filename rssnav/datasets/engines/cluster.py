@@ -11,12 +11,12 @@ import logging
 import time
 import warnings
 from collections import deque
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from typing import Any
+from typing import Any, TypeVar
 
 from raytrace import SceneWarning
 from raytrace.extras import needs_extra
@@ -27,6 +27,8 @@ from rssnav.datasets.errors import DatasetError
 from rssnav.datasets.plans import PlanSource
 from rssnav.datasets.tracing import Limits
 from rssnav.datasets.work import Summary, make_plan
+
+Asked = TypeVar("Asked")
 
 CONNECT_S = 10.0
 POLL_S = 0.2
@@ -73,13 +75,13 @@ class Cluster:
             self._run(client, job)
 
     def _run(self, client: Any, job: Job) -> None:
-        client.register_plugin(_warming(job.configuration))
+        self._asked(client.register_plugin, _warming(job.configuration))
         waiting, running = deque(job.sources), dict[str, tuple[PlanSource, Any]]()
         done: SimpleQueue[str] = SimpleQueue()
         window, counted_s = 1, 0.0
         while waiting or running:
             if time.monotonic() - counted_s > COUNT_EVERY_S:
-                window = max(1, (1 + AHEAD) * _threads_of(client))
+                window = max(1, (1 + AHEAD) * self._asked(_threads_of, client))
                 counted_s = time.monotonic()
             while waiting and len(running) < window:
                 source = waiting.popleft()
@@ -118,11 +120,21 @@ class Cluster:
         """Raise DatasetError where the scheduler is gone."""
         comm = getattr(client, "scheduler_comm", None)
         if client.status != "running" or comm is None or comm.comm.closed():
-            where = f"at {self._scheduler} " if self._scheduler else ""
-            raise DatasetError(
-                f"the Dask scheduler {where}is gone; finished plans are saved: run the same "
-                "command again to resume"
-            )
+            raise self._gone()
+
+    def _asked(self, ask: Callable[..., Asked], *arguments: Any) -> Asked:
+        """Ask the scheduler something; raise DatasetError where it does not answer."""
+        try:
+            return ask(*arguments)
+        except (OSError, TimeoutError) as error:
+            raise self._gone() from error
+
+    def _gone(self) -> DatasetError:
+        where = f"at {self._scheduler} " if self._scheduler else ""
+        return DatasetError(
+            f"the Dask scheduler {where}is gone; finished plans are saved: run the same command "
+            "again to resume"
+        )
 
 
 def on_worker(
@@ -176,8 +188,10 @@ def _threads_of(client: Any) -> int:
 
 @contextmanager
 def _connected(scheduler: str) -> Generator[Any]:
+    from dask import config
     from distributed import Client
 
+    config.set({"distributed.comm.timeouts.connect": f"{CONNECT_S}s"})
     try:
         client = Client(scheduler, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
