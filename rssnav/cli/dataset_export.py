@@ -20,8 +20,8 @@ def add_to(group: typer.Typer) -> None:
         "export",
         epilog=examples(
             "rssnav dataset make demo -o demo",
-            "rssnav dataset export demo --to parquet -o samples",
-            "rssnav dataset export demo --to challenge -o challenge",
+            "rssnav dataset export demo --layout parquet -o samples",
+            "rssnav dataset export demo --layout challenge -o challenge",
         ),
     )(export)
     group.command(
@@ -33,11 +33,12 @@ def add_to(group: typer.Typer) -> None:
 def export(
     dataset: Folder,
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="The folder to make.")],
-    to: Annotated[
+    layout: Annotated[
         LayoutName,
         typer.Option(
+            "--layout",
             help="challenge: PNG and CSV as in the 2025 indoor path loss challenge; deepmimo: npz "
-            "of paths; zarr: a Zarr v3 store; parquet: samples for dataset catalogues."
+            "of paths; zarr: a Zarr v3 store; parquet: samples for dataset catalogues.",
         ),
     ],
 ) -> None:
@@ -45,7 +46,7 @@ def export(
     from rssnav.datasets.exporters.formats import export_dataset
 
     with one_progress("plans") as progress:
-        export_dataset(dataset, out, to, progress)
+        export_dataset(dataset, out, layout, progress)
     say(f"wrote {out}")
 
 

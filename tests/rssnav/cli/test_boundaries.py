@@ -25,6 +25,7 @@ GIVEN = {
     "kind": "flat",
     "spec": "spec.toml",
     "dataset": "dataset",
+    "layout": "parquet",
 }
 SUFFIX = {
     "map": ".h5", "train": ".h5", "fly": ".gif", "plan new": ".toml", "plan generate": ".toml",
