@@ -21,7 +21,7 @@ from rssnav.datasets.errors import DatasetError
 from rssnav.datasets.plans import FilePlans, GeneratedPlans, PlanSource
 from rssnav.datasets.split import SPLITS, Fractions, divided
 from rssnav.datasets.table import Table
-from rssnav.presets import BY_LOSS, PRESETS
+from rssnav.presets import BY_LOSS, BY_NUMBER, PRESETS
 
 MAX_SPEC_BYTES = 1_000_000
 MAX_PLANS = 10_000_000
@@ -270,6 +270,8 @@ def _preset(table: Table, name: str) -> TraceConfig:
     given = {field: table.values[key] for key, field in _LIMITS.items() if key in table.values}
     if given.get("max_transmissions") == UNLIMITED:
         given = {**BY_LOSS, **given, "max_transmissions": None}
+    elif "max_transmissions" in given:
+        given = {**BY_NUMBER, **given}
     for field, value in given.items():
         if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
             key = next(key for key, of in _LIMITS.items() if of == field)

@@ -12,6 +12,7 @@ from raytrace import TraceConfig
 from rssnav.datasets.errors import DatasetError
 from rssnav.datasets.spec import builtin_specs, load_spec
 from rssnav.datasets.split import SPLITS, Fractions
+from rssnav.presets import PRESETS
 
 WRONG = {
     'name = "small"': ('nam = "small"', "unknown key nam: did you mean name"),
@@ -49,7 +50,7 @@ def test_defaults_and_limits_are_those_of_the_presets() -> None:
     configuration = spec_of().configuration
     assert configuration.presets == {"quick": TraceConfig(1, 0, 1)}
     bare = spec_of('name = "a"\n[[plans]]\nkind = "flat"\nseeds = [5]').configuration
-    assert bare.presets == {"building": TraceConfig(3, 1, 3)}
+    assert bare.presets == {"building": PRESETS["building"].config}
     unlimited = edited("transmissions = 1", 'transmissions = "none"')
     limits = spec_of(unlimited).configuration.presets["quick"]
     assert (limits.max_transmissions, limits.min_power_dbm) == (None, -120.0)
