@@ -48,17 +48,22 @@ class Chains:
 
     def __init__(self, segments: Iterable[Segment]) -> None:
         self._chains = [list(segment) for segment in segments]
-        self._drawn: dict[int, shapely.LineString] = {}
+        self._lines = np.empty(0, dtype=object)
+        self._redrawn = set(range(len(self._chains)))
+        self._seen = Places()
         far = max((abs(c) for chain in self._chains for v in chain for c in v), default=1.0)
         self.snap_m = max(FINEST_SNAP_M, 2.0 ** (np.ceil(np.log2(max(far, 1.0))) - 46.0))
         self._settle()
 
     def geometries(self) -> NDArray[np.object_]:
         """(n,) line strings; empty for a chain whose vertices are one."""
-        for number, chain in enumerate(self._chains):
-            if number not in self._drawn:
-                self._drawn[number] = shapely.LineString(chain if len(chain) > 1 else None)
-        return np.array([self._drawn[number] for number in range(len(self._chains))], dtype=object)
+        added = np.empty(len(self._chains) - len(self._lines), dtype=object)
+        self._lines = np.concatenate([self._lines, added])
+        for number in self._redrawn:
+            chain = self._chains[number]
+            self._lines[number] = shapely.LineString(chain if len(chain) > 1 else None)
+        self._redrawn.clear()
+        return self._lines.copy()
 
     def pieces(self) -> list[Segment]:
         """Straight pieces between vertices, which are snapped."""
@@ -78,6 +83,7 @@ class Chains:
         tuple or None
             The first vertex from which a cut meets nothing; None if there is none.
         """
+        self._seen = Places(self._vertices())
         for tip, ahead in cuts:
             if not self._add_cut(tip, ahead):
                 return tip
@@ -93,29 +99,37 @@ class Chains:
         away = np.hypot(*(hits - start).T)
         if len(hits):
             reach = float(away.min()) + AIM_M
-        vertices = self._vertices()
-        offset = np.array(vertices) - start
-        root = vertices[int(np.hypot(*offset.T).argmin())]
+        offset = self._seen.points - start
+        apart = np.hypot(*offset.T)
+        root = self._first_of(np.flatnonzero(apart == apart.min()))
         if len(hits) and root in self._chains[chain[away.argmin()]]:
             return True
-        end = self._passed(offset, ahead, reach)
-        if end is not None:
-            place = vertices[end]
+        passed = self._passed(offset, ahead, reach)
+        if len(passed):
+            place = self._first_of(passed)
         elif len(hits):
             nearest = int(np.argmin(away))
             place = self._insert(int(chain[nearest]), vertex_at(hits[nearest]))
         else:
             return False
+        self._redrawn.add(len(self._chains))
         self._chains.append([root, place])
         return True
 
+    def _first_of(self, found: NDArray[np.int64]) -> Vertex:
+        """Vertex of a number; of several, the first in the order of the chains."""
+        vertices = [self._seen.vertices[number] for number in found.tolist()]
+        if len(vertices) == 1:
+            return vertices[0]
+        return next(vertex for vertex in self._vertices() if vertex in vertices)
+
     @staticmethod
-    def _passed(offset: Floats, ahead: Floats, reach: float) -> int | None:
-        """Return the first vertex that a ray passes by less than `AIM_M`."""
+    def _passed(offset: Floats, ahead: Floats, reach: float) -> NDArray[np.int64]:
+        """Return the first vertex that a ray passes by less than `AIM_M`, or several as near."""
         along = offset @ ahead
         aside = np.abs(ahead[0] * offset[:, 1] - ahead[1] * offset[:, 0])
         passed = np.flatnonzero((aside < AIM_M) & (along > AHEAD_M) & (along < reach))
-        return int(passed[along[passed].argmin()]) if len(passed) else None
+        return passed[along[passed] == along[passed].min(initial=np.inf)]
 
     def _vertices(self) -> list[Vertex]:
         """All vertices, ends of chains first."""
@@ -146,7 +160,7 @@ class Chains:
         for number, chain in enumerate(self._chains):
             if not merged.keys().isdisjoint(chain):
                 self._chains[number] = list(dict.fromkeys(merged.get(v, v) for v in chain))
-                self._drawn.pop(number, None)
+                self._redrawn.add(number)
         return next(iter(merged), None)
 
     def _pass_through_vertices(self) -> Vertex | None:
@@ -178,11 +192,41 @@ class Chains:
         away = [float(np.hypot(v[0] - vertex[0], v[1] - vertex[1])) for v in chain]
         if min(away) <= COINCIDENT_M:
             return chain[away.index(min(away))]
+        self._seen.add(vertex)
         chain.append(vertex)
         start, end = np.array(chain[0]), np.array(chain[-2])
         chain.sort(key=lambda v: float((np.array(v) - start) @ (end - start)))
-        self._drawn.pop(number, None)
+        self._redrawn.add(number)
         return vertex
+
+
+class Places:
+    """Different vertices, and their points.
+
+    Attributes
+    ----------
+    vertices : list of tuple
+    """
+
+    def __init__(self, vertices: Sequence[Vertex] = ()) -> None:
+        self.vertices = list(vertices)
+        self._known = set(vertices)
+        self._points = np.array(vertices, dtype=np.float64).reshape(-1, 2)
+
+    @property
+    def points(self) -> Floats:
+        """(n, 2) [m]."""
+        return self._points[: len(self.vertices)]
+
+    def add(self, vertex: Vertex) -> None:
+        """Add a vertex, unless it is there already."""
+        if vertex in self._known:
+            return
+        if len(self.vertices) == len(self._points):
+            self._points = np.concatenate([self._points, np.empty((len(self._points) + 16, 2))])
+        self._points[len(self.vertices)] = vertex
+        self.vertices.append(vertex)
+        self._known.add(vertex)
 
 
 def vertex_at(point: Sequence[float] | Floats) -> Vertex:
