@@ -27,6 +27,7 @@ class What(StrEnum):
     NOISE = "noise"
     COMPARISON = "comparison"
     READINGS = "readings"
+    PLANS = "plans"
 
 
 class StepCount(StrEnum):
@@ -57,8 +58,9 @@ def run_experiments(
         What,
         typer.Argument(
             help="paper, or a study: choices that the paper does not specify (sensitivity), "
-            "fluctuating RSS readings (noise), other methods and the optimum (comparison), or "
-            "flights that have the printed lengths (readings)."
+            "fluctuating RSS readings (noise), other methods and the optimum (comparison), "
+            "flights that have the printed lengths (readings), or floor plans that have such "
+            "flights (plans)."
         ),
     ] = What.PAPER,
     quick: Annotated[

@@ -1,0 +1,102 @@
+"""Which printed flights exist in a floor plan, searched exactly.
+
+As on the empty floor (:mod:`rssnav.experiments.studies.readings.empty_floor`), but along the steps
+that the walls leave.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from raytrace import Grid
+from rssnav.experiments.paper.counting import SUPPORTED_COUNT
+from rssnav.experiments.paper.data import AGENTS, Configuration
+from rssnav.experiments.paper.scenarios import SPEEDS
+from rssnav.experiments.studies.readings.empty_floor import ONE, Arrivals
+from rssnav.experiments.studies.readings.lengths import StepCounts, supposed_counts
+from rssnav.missions.layout import Layout
+
+if TYPE_CHECKING:
+    from floorplans import FloorPlan
+
+GOAL_M = 2.0
+FLYING_HEIGHT_M = 2.0
+UNKNOWN = Configuration(2, "rss", 2)
+"""Its printed length, 121.65 m, is no flight's, so no flight of it is required."""
+
+
+def required_counts(scenario: int, speed: int) -> list[StepCounts]:
+    """Counted steps of the flights that a plan must allow."""
+    counts = supposed_counts()
+    keys = [Configuration(scenario, agent, speed) for agent in AGENTS]
+    return [counts[key] for key in keys if key != UNKNOWN]
+
+
+def fewest_wanted(scenario: int, speed: int) -> int:
+    """Steps of the shorter one of the two printed flights, the one that is left out included."""
+    return 1 + min(counts.steps for counts in required_counts(scenario, speed))
+
+
+def allows_printed_flights(plan: FloorPlan, scenario: int) -> bool:
+    """Whether the printed flights exist in a plan, and none has fewer steps.
+
+    Trained agents fly the fewest steps or one or two more, so in a plan with shorter flights they
+    would not fly as long as printed.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        With source and start.
+    scenario : int
+        Whose flights.
+
+    Returns
+    -------
+    bool
+    """
+    return all(_allows(plan, scenario, speed) for speed in sorted(SPEEDS, reverse=True))
+
+
+def _allows(plan: FloorPlan, scenario: int, speed: int) -> bool:
+    required = required_counts(scenario, speed)
+    found = arrivals(plan, speed, max(counts.steps for counts in required) + 1)
+    return found.least_steps == fewest_wanted(scenario, speed) and all(
+        found.has(counts, SUPPORTED_COUNT) for counts in required
+    )
+
+
+def arrivals(plan: FloorPlan, speed: int, most_steps: int) -> Arrivals:
+    """Find how flights in a plan enter the goal.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        With source and start.
+    speed : int
+        Cells a step moves along an axis.
+    most_steps : int
+        Most steps of a flight, all counted.
+
+    Returns
+    -------
+    Arrivals
+        Without flights whose first step is left out.
+    """
+    layout = Layout.of_plan(plan, Grid.over(plan.bounds, 1.0, FLYING_HEIGHT_M), speed)
+    start = layout.nearest(*plan.require_start())
+    goal = layout.distance_m(*plan.require_source()[:2]) < GOAL_M
+    steps = [(action, np.flatnonzero(layout.action_mask[:, action])) for action in range(8)]
+    words = np.zeros(layout.n_states, np.uint64)
+    words[start] = ~goal[start]
+    straight, diagonal = [0], [0]
+    for _ in range(most_steps):
+        moved = np.zeros((2, words.size), np.uint64)
+        for action, cells in steps:  # the cells after a step differ from each other
+            moved[action % 2, layout.next_state[cells, action]] |= words[cells]
+        moved[1] <<= ONE
+        straight.append(int(np.bitwise_or.reduce(moved[0, goal], initial=0)))
+        diagonal.append(int(np.bitwise_or.reduce(moved[1, goal], initial=0)))
+        words = np.where(goal, np.uint64(0), moved[0] | moved[1])
+    return Arrivals(straight, diagonal, [0] * len(straight))
