@@ -4,8 +4,8 @@ import asyncio
 import logging
 import signal
 import socket
-from collections.abc import Callable, Sequence
-from contextlib import closing
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from ipaddress import ip_address
@@ -78,27 +78,36 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
     guard_websockets(settings.limits)
     names = host_names(settings.address)
     ready(f"http://{names[0]}:{port}/")
-    on_interrupt = signal.getsignal(signal.SIGINT)
-    server = pn.serve(
-        {"/": Tabs(plan, settings.limits).page},
-        port=port,
-        address=settings.address,
-        websocket_origin=[
-            *(f"{name}:{port}" for name in names),
-            *with_port(settings.origins, port),
-        ],
-        websocket_max_message_size=settings.limits.upload_bytes + settings.limits.message_bytes,
-        unused_session_lifetime_milliseconds=UNUSED_MS,
-        check_unused_sessions_milliseconds=UNUSED_MS // 2,
-        title="rssnav explorer",
-        show=settings.show,
-        start=False,
-        verbose=False,
-    )
-    signal.signal(signal.SIGINT, on_interrupt)  # Panel's handler stops with exit code 0
+    with _own_interrupts():
+        server = pn.serve(
+            {"/": Tabs(plan, settings.limits).page},
+            port=port,
+            address=settings.address,
+            websocket_origin=[
+                *(f"{name}:{port}" for name in names),
+                *with_port(settings.origins, port),
+            ],
+            websocket_max_message_size=settings.limits.upload_bytes + settings.limits.message_bytes,
+            unused_session_lifetime_milliseconds=UNUSED_MS,
+            check_unused_sessions_milliseconds=UNUSED_MS // 2,
+            title="rssnav explorer",
+            show=settings.show,
+            start=False,
+            verbose=False,
+        )
     assert isinstance(server, Server)
     server.start()
     server.io_loop.start()
+
+
+@contextmanager
+def _own_interrupts() -> Generator[None]:
+    """Keep the handler of Ctrl-C; the one that Panel installs stops with exit code 0."""
+    handler = signal.getsignal(signal.SIGINT)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
 
 
 class Tabs:

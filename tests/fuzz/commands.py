@@ -170,7 +170,11 @@ def _files() -> dict[str, bytes]:
 
 @contextmanager
 def _interrupted() -> Iterator[None]:
-    """Send SIGINT to this process after a moment, and again: libraries drop some interrupts."""
+    """Send SIGINT to this process after a moment, and again: libraries drop some interrupts.
+
+    The explorer's server handles SIGINT in its own way if it is interrupted while it starts.
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
     signal.setitimer(signal.ITIMER_REAL, INTERRUPT_AFTER_S, INTERRUPT_AGAIN_S)
     try:

@@ -1,7 +1,8 @@
 """Random floor plans of the paper's two scenarios.
 
 Sizes, heights, source and start are the paper's. Walls and door jambs stand on whole metres, so
-that the UAV keeps half a metre from them. What varies is where hallways, halls, rooms and doors are.
+that the UAV keeps half a metre from them. What varies is where hallways, halls, rooms and doors
+are.
 """
 
 from __future__ import annotations

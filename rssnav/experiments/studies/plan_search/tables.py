@@ -55,8 +55,8 @@ def held_out(found: Sequence[Fit], n_blocks: int) -> Table:
         "plans_held_out",
         "What the lengths determine",
         "The drawn plan whose lengths at all speeds, or at 1 and 2 m/s, are nearest to the "
-        "paper's, and what it predicts: the lengths at 4 m/s, and the claims. As good: drawn plans whose "
-        f"largest deviation is within {100 * AS_GOOD:g} percentage points of the best one's.",
+        "paper's, and what it predicts: the lengths at 4 m/s, and the claims. As good: drawn plans "
+        f"whose largest deviation is within {100 * AS_GOOD:g} percentage points of the best one's.",
         (
             Column("scenario", "Scenario"),
             Column("drawn", "Drawn"),

@@ -1,0 +1,129 @@
+"""The search for plans: what it draws, which plans it keeps, and how it scores them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+
+import floorplans
+from raytrace import Grid
+from rssnav.experiments.paper.counting import Count
+from rssnav.experiments.paper.data import CONFIGURATIONS
+from rssnav.experiments.studies.plan_search import tables
+from rssnav.experiments.studies.plan_search.constraints import (
+    allows_printed_flights,
+    arrivals,
+    fewest_wanted,
+)
+from rssnav.experiments.studies.plan_search.families import draw
+from rssnav.experiments.studies.plan_search.fits import BUILT_IN, Fit, Piece
+from rssnav.experiments.studies.readings.empty_floor import FLOORS, lattice
+from rssnav.experiments.studies.readings.empty_floor import arrivals as empty_arrivals
+from rssnav.experiments.studies.readings.interpretations import STATED_GOAL, Geometry
+from rssnav.experiments.studies.readings.lengths import StepCounts
+from rssnav.missions.layout import Layout
+
+scenarios = pytest.mark.parametrize("scenario", [1, 2])
+
+
+@scenarios
+def test_drawn_plans_have_what_the_paper_states(scenario: int) -> None:
+    known = floorplans.load(f"scenario{scenario}")
+    drawn = [draw(scenario, np.random.default_rng(seed)) for seed in range(30)]
+    plans = [plan for plan in drawn if plan is not None]
+    assert len(plans) > 15
+    assert len({plan.sha256 for plan in plans}) == len(plans)
+    for plan in plans:
+        assert (plan.bounds, plan.source, plan.start) == (known.bounds, known.source, known.start)
+        ends = plan.solid_segments(2.0)
+        np.testing.assert_array_equal(ends, np.round(ends))
+
+
+@scenarios
+@pytest.mark.parametrize("speed", [2, 4])
+def test_without_inner_walls_the_flights_are_those_of_the_empty_floor(scenario, speed) -> None:
+    plan = floorplans.load(f"scenario{scenario}")
+    outside = tuple(wall for wall in plan.walls if wall.material == "concrete")
+    found = arrivals(replace(plan, walls=outside), speed, 40)
+    geometry = Geometry(0.5, (0.0, 0.0), STATED_GOAL)
+    empty = empty_arrivals(lattice(FLOORS[scenario], geometry, speed), 39)
+    assert (found.straight, found.diagonal) == (empty.straight, empty.diagonal)
+
+
+def test_flights_are_those_of_an_enumeration() -> None:
+    """All flights of up to 4 steps from a cell near the source, one by one."""
+    plan = floorplans.load("scenario1")
+    plan = replace(plan, start=(8.5, 13.5))
+    found = arrivals(plan, 1, 4)
+    layout = Layout.of_plan(plan, Grid.over(plan.bounds, 1.0, 2.0), 1)
+    goal = layout.distance_m(*plan.source[:2]) < 2.0
+    for n, diagonal in product(range(1, 5), range(5)):
+        flights = _flights(layout, goal, layout.nearest(*plan.start), n)
+        exists = any(sum(a % 2 for a in flight) == diagonal for flight in flights)
+        assert found.has(StepCounts(n, diagonal), Count.ALL) == exists
+
+
+def _flights(layout, goal, start, n):
+    """Actions of all flights that enter the goal with step n."""
+    unfinished = [((), start)]
+    for step in range(1, n + 1):
+        longer = [
+            ((*flight, action), int(layout.next_state[cell, action]))
+            for flight, cell in unfinished
+            for action in range(8)
+            if layout.next_state[cell, action] >= 0
+        ]
+        arrived = [flight for flight, cell in longer if goal[cell]]
+        unfinished = [(flight, cell) for flight, cell in longer if not goal[cell]]
+        if step == n:
+            return arrived
+    return []
+
+
+def test_the_wanted_steps_are_one_more_than_printed() -> None:
+    assert [fewest_wanted(1, speed) for speed in (1, 2, 4)] == [87, 44, 23]
+    assert [fewest_wanted(2, speed) for speed in (1, 2, 4)] == [100, 52, 28]
+
+
+def test_the_built_in_plan_of_scenario_1_needs_a_step_too_many() -> None:
+    plan = floorplans.load("scenario1")
+    assert not allows_printed_flights(plan, 1)
+    assert [arrivals(plan, speed, 90).least_steps for speed in (1, 2)] == [88, 45]
+
+
+def fit(deviation, scenario=1, block=0, turns=(2.0, 1.0)) -> Fit:
+    keys = [key for key in CONFIGURATIONS if key.scenario == scenario]
+    per_agent = {"rss": turns[0], "location": turns[1]}
+    return Fit(
+        Piece(scenario, block),
+        0,
+        "",
+        {key: deviation[key.speed] for key in keys},
+        {key: per_agent[key.agent] for key in keys},
+        dict.fromkeys(keys, 1.0),
+    )
+
+
+def test_predictions_come_from_the_plan_that_fits_the_other_lengths() -> None:
+    found = [
+        fit({1: 0.0, 2: 0.0, 4: 0.0}, block=BUILT_IN),
+        fit({1: -0.01, 2: 0.02, 4: 0.3}),
+        fit({1: 0.05, 2: 0.05, 4: 0.05}),
+    ]
+    row, empty = tables.held_out(found, 2).records()
+    assert (row["drawn"], row["allowed"], row["as_good"]) == (500, 2, 1)
+    assert row["best_percent"] == pytest.approx(5.0)
+    assert row["slow_percent"] == pytest.approx(2.0)
+    assert row["predicted_percent"] == pytest.approx(30.0)
+    assert row["median_percent"] == pytest.approx(17.5)
+    assert row["claims"] == 6
+    assert empty["best_percent"] is None
+
+
+def test_a_plan_without_arrivals_fits_worst() -> None:
+    lost = fit({1: float("nan"), 2: 0.0, 4: 0.0})
+    assert lost.worst() == np.inf
+    assert tables.fits([lost]).records()[0]["worst_percent"] is None
