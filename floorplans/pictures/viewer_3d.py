@@ -46,6 +46,9 @@ FIELD_OF_VIEW_DEG = 45.0
 
 _TUBE_SIDES = 5
 _NARROW_PX = 600
+_WIDE = 1.15
+"""Width over height of a page that shows all of a scene with the camera's field of view."""
+
 _FONT = "font:13px/1.5 sans-serif;pointer-events:none"
 _OLD_TITLE = "<title>trimesh: threejs viewer</title>"
 _PAGE_CHANGES = (
@@ -59,8 +62,14 @@ _PAGE_CHANGES = (
         "tracklight.position.copy(camera.position);"
         "tracklight.target.position.copy(controls.target);",
     ),
+    (
+        "camera.aspect=window.innerWidth/window.innerHeight;",
+        "camera.aspect=window.innerWidth/window.innerHeight;"
+        f"camera.fov=Math.atan(Math.tan({FIELD_OF_VIEW_DEG / 2}*Math.PI/180)"
+        f"*Math.max(1,{_WIDE}/camera.aspect))*360/Math.PI;",
+    ),
 )
-"""Ambient light, and a lamp that follows the camera's view."""
+"""Ambient light, a lamp that follows the view, and all of the scene on a narrow page too."""
 
 
 def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) -> trimesh.Scene:

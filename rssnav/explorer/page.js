@@ -2,12 +2,20 @@
 const STEPS = {
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], Enter: [0, 0],
 };
-const SKIPPED = ".bk-spin-btn, .bk-layer.bk-events, .filepond--browser";
+const CANVAS = ".bk-layer.bk-events";
+const SKIPPED = `.bk-spin-btn, ${CANVAS}, .filepond--browser`;
+const view = document.querySelector(".view");
 let presses = 0;
 
-document.querySelector(".view").addEventListener("keydown", (event) => {
+view.addEventListener("focusin", (event) => {
+  const [focused] = event.composedPath();
+  if (focused.matches(CANVAS)) focused.style.outline = "none";
+});
+view.addEventListener("keydown", (event) => {
   const step = STEPS[event.key];
-  if (!step || event.target !== event.currentTarget || event.ctrlKey || event.altKey) return;
+  const [focused] = event.composedPath();
+  const onMap = focused === event.currentTarget || focused.matches(CANVAS);
+  if (!step || !onMap || event.ctrlKey || event.altKey) return;
   const [keys] = Bokeh.documents.map((page) => page.get_model_by_name("keys")).filter(Boolean);
   if (!keys) return;
   event.preventDefault();

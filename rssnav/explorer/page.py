@@ -20,6 +20,7 @@ from rssnav.explorer.styles import (
     PAGE,
     PAGE_CSS,
     PAGE_JS,
+    TABS,
     WIDGETS,
     map_words,
     plan_words,
@@ -113,7 +114,7 @@ class Page:
             ("Training", self._training_panel.view),
             ("Files", self._downloads.view),
             ("Help", HelpPanel().view),
-            stylesheets=WIDGETS,
+            stylesheets=TABS,
             sizing_mode="stretch_width",
         )
         self._tabs.param.watch(self._switch_tab, "active")

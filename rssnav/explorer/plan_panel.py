@@ -64,6 +64,7 @@ class PlanPanel:
         self._plan.options = self._names()
         self._plan.value = plan.name
         self._report.object = details("Import report", self._session.import_report)
+        self._report.visible = bool(self._session.import_report)
         self._showing = False
 
     def empty_upload(self) -> None:

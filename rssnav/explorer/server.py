@@ -12,6 +12,7 @@ from ipaddress import ip_address
 from typing import Any
 
 import panel as pn
+from panel.io.resources import get_dist_path
 from panel.io.server import Server
 from tornado.websocket import WebSocketClosedError
 
@@ -21,7 +22,7 @@ from rssnav.explorer.limits import Limits
 from rssnav.explorer.page import POLL_MS, Frame, Page
 from rssnav.explorer.session import Session
 from rssnav.explorer.tracing import MapCache
-from rssnav.explorer.websockets import guard_websockets
+from rssnav.explorer.websockets import guard_websockets, lock_documents
 
 LOGGER = logging.getLogger(__name__)
 
@@ -76,6 +77,7 @@ def serve(plan: FloorPlan, settings: ServerSettings, ready: Callable[[str], None
     pn.extension("filedropper", notifications=False)
     pn.config.exception_handler = _log_briefly
     guard_websockets(settings.limits)
+    lock_documents()
     names = host_names(settings.address)
     ready(f"http://{names[0]}:{port}/")
     with _own_interrupts():
@@ -129,6 +131,10 @@ class Tabs:
     def page(self) -> pn.Template:
         """Return an empty page that is filled when its browser connects."""
         asyncio.get_running_loop().set_exception_handler(_report)
+        document = pn.state.curdoc
+        assert document is not None
+        # Panel tells it to the session of the request, which a slow browser comes too late for.
+        document.template_variables.setdefault("dist_url", get_dist_path(cdn=False))
         frame = Frame()
         pn.state.onload(partial(self._open, frame))
         return frame.template

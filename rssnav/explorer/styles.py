@@ -21,6 +21,8 @@ def _text(name: str) -> str:
 PAGE = _text("page.html")
 PAGE_CSS, PAGE_JS = _text("page.css"), _text("page.js")
 WIDGETS = [_text("widgets.css")]
+TABS = [*WIDGETS, ':host > [style*="visibility: hidden"] { height: 0; overflow: hidden; }']
+"""Styles of tabs that are as high as the one that is open."""
 FRAME = ":host, :host > div { height: 100%; width: 100%; }"
 """Style of a pane filled by a frame."""
 

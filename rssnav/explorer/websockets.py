@@ -1,4 +1,4 @@
-"""Requests of browsers: not too many pages, and only messages that the page sends."""
+"""Requests of browsers: not too many pages, only messages that the page sends, in good order."""
 
 import asyncio
 import logging
@@ -10,6 +10,7 @@ from bokeh.protocol.message import Message
 from bokeh.server.urls import per_app_patterns
 from bokeh.server.views.session_handler import SessionHandler
 from panel.io.server import WSHandler
+from panel.reactive import Syncable
 from tornado.web import RequestHandler
 
 from rssnav.explorer.limits import Limits
@@ -44,8 +45,18 @@ def guard_websockets(limits: Limits) -> None:
         else:
             continue
         per_app_patterns[index] = (route, guarded)
-    for name in ("bokeh.server.views.ws", "bokeh.server.protocol_handler"):
+    for name in ("bokeh.server.views.ws", "bokeh.server.protocol_handler", "panel.reactive"):
         logging.getLogger(name).addFilter(shorten)
+
+
+def lock_documents() -> None:
+    """Make Panel handle quick events under the document's lock.
+
+    It runs an event that follows another change closely without the lock, and what the event then
+    changes of the page fails.
+    """
+    for name in ("_event_coroutine", "_change_coroutine"):
+        vars(Syncable)[name].lock = True
 
 
 def refuse(handler: RequestHandler, count: int, what: str) -> None:

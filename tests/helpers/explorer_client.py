@@ -87,7 +87,7 @@ class Server:
 def running_server(log: Path, command: Sequence[str] = COMMAND) -> Iterator[Server]:
     """A server on any free port, in a process of its own."""
     with log.open("wb") as remarks:
-        process = subprocess.Popen(command, stderr=remarks, stdout=subprocess.DEVNULL)
+        process = subprocess.Popen(command, stderr=remarks, stdout=remarks)
     server = Server(process, log)
     try:
         ends_s = time.monotonic() + PATIENCE_S

@@ -162,6 +162,22 @@ def test_thousands_of_events_leave_other_tabs_their_turn(server, tab, make) -> N
     assert server.memory_bytes < memory_bytes + 100_000_000
 
 
+def test_a_click_right_after_a_change_finds_the_page_locked(server, make) -> None:
+    """As of somebody who is quick; the log has no change that failed."""
+    quick = make().open().wait_for_map()
+    plot = quick.find("Figure", "min_height", 280)
+    tabs = next(k for k, m in quick.models.items() if m.get("type", "").endswith("Tabs"))
+    quick.event("tap", {"model": {"id": plot}, "x": 6.5, "y": 4.5, "sx": 1, "sy": 1})
+    quick.until(lambda: "(6.5, 4.5, 2) m" in quick.texts)
+    turned = {"kind": "ModelChanged", "model": {"id": tabs}, "attr": "active", "new": 2}
+    click = clicks(quick.find("Button", "label", "Train"), 1)["events"]
+    for _ in range(3):
+        quick.send("PATCH-DOC", {"events": [turned, *click]})
+        quick.receive(0.5)
+    quick.still_works()
+    assert "document lock" not in server.log.read_text(encoding="utf-8")
+
+
 def test_a_message_of_too_many_events_ends_its_tab_only(tab, make) -> None:
     attacker = make().open()
     attacker.send("PATCH-DOC", clicks(attacker.find("Button", "label", "Train"), 300))
@@ -251,7 +267,8 @@ def test_websockets_of_other_pages_are_refused(make, origin) -> None:
 def test_a_slow_browser_finds_its_page(server, make) -> None:
     token = server.token()
     time.sleep(5.0)
-    make().open(token).wait_for_map()
+    slow = make().open(token).wait_for_map()
+    assert "https:" not in json.dumps(slow.models, default=str)  # no style sheet from elsewhere
 
 
 def test_work_ends_with_its_tab(server, make) -> None:

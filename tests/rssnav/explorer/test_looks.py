@@ -27,6 +27,12 @@ def faults(tab: Tab) -> list[str]:
     return [*tab.page.evaluate(LAYOUT), *tab.page.evaluate(CONTRAST)]
 
 
+def click_cell(tab: Tab, x: float, y: float) -> None:
+    """Click a cell of the map, which may be above what is scrolled to."""
+    tab.page.evaluate("scrollTo(0, 0)")
+    tab.page.mouse.click(*tab.place(x, y))
+
+
 def focused(tab: Tab) -> dict:
     return tab.page.evaluate(FOCUSED)
 
@@ -40,7 +46,7 @@ def test_nothing_is_cut_overlaps_or_is_hard_to_read(tab, tmp_path) -> None:
     tab.page.get_by_label("Source x [m]").fill("1.2")
     tab.page.get_by_label("Source x [m]").press("Enter")
     tab.wait_for_map()
-    tab.page.mouse.click(*tab.place(6.5, 4.5))
+    click_cell(tab, 6.5, 4.5)
     tab.page.get_by_text(PATHS_OF).wait_for()
     for name in ("Setup", "Paths", "Training", "Files", "Help"):
         tab.choose(name)
@@ -81,7 +87,7 @@ def test_tab_leads_through_every_control_in_the_order_of_the_page(tab) -> None:
 
 def test_arrows_choose_a_cell_and_enter_shows_its_paths(tab) -> None:
     tab.choose("Setup")
-    tab.page.mouse.click(*tab.place(6.5, 4.5))
+    click_cell(tab, 6.5, 4.5)
     tab.page.get_by_text(PATHS_OF).wait_for()
     tab.choose("Setup")
     tab.page.locator(".view").focus()
@@ -89,6 +95,10 @@ def test_arrows_choose_a_cell_and_enter_shows_its_paths(tab) -> None:
         tab.page.keyboard.press(key)
     tab.page.keyboard.press("Enter")
     tab.page.get_by_text("(7.5, 3.5, 2) m").wait_for()
+    click_cell(tab, 6.5, 4.5)
+    tab.page.get_by_text(PATHS_OF).wait_for()
+    tab.page.keyboard.press("ArrowDown")  # the map has the focus after a click
+    tab.page.get_by_text("(6.5, 3.5, 2) m").wait_for()
     tab.choose("Setup")
     tab.page.locator(".bk-tab", has_text="Files").focus()
     tab.page.keyboard.press("Enter")
