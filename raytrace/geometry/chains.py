@@ -49,6 +49,7 @@ class Chains:
     def __init__(self, segments: Iterable[Segment]) -> None:
         self._chains = [list(segment) for segment in segments]
         self._lines = np.empty(0, dtype=object)
+        self._ends = np.empty((0, 2, 2))
         self._redrawn = set(range(len(self._chains)))
         self._seen = Places()
         far = max((abs(c) for chain in self._chains for v in chain for c in v), default=1.0)
@@ -59,9 +60,11 @@ class Chains:
         """(n,) line strings; empty for a chain whose vertices are one."""
         added = np.empty(len(self._chains) - len(self._lines), dtype=object)
         self._lines = np.concatenate([self._lines, added])
+        self._ends = np.concatenate([self._ends, np.zeros((len(added), 2, 2))])
         for number in self._redrawn:
             chain = self._chains[number]
             self._lines[number] = shapely.LineString(chain if len(chain) > 1 else None)
+            self._ends[number] = chain[0], chain[-1]
         self._redrawn.clear()
         return self._lines.copy()
 
@@ -95,7 +98,9 @@ class Chains:
         start, reach = np.array(tip), FARTHEST_M
         ray = shapely.LineString([start + ahead * AHEAD_M, start + ahead * FARTHEST_M])
         lines = self.geometries()
-        hits, chain = shapely.get_coordinates(shapely.intersection(ray, lines), return_index=True)
+        met = self._met(start, ahead)
+        hits, line = shapely.get_coordinates(shapely.intersection(ray, lines[met]), return_index=True)
+        chain = met[line]
         away = np.hypot(*(hits - start).T)
         if len(hits):
             reach = float(away.min()) + AIM_M
@@ -115,6 +120,14 @@ class Chains:
         self._redrawn.add(len(self._chains))
         self._chains.append([root, place])
         return True
+
+    def _met(self, start: Floats, ahead: Floats) -> NDArray[np.int64]:
+        """Numbers of the chains that a ray may meet: those that are not on one side of it."""
+        ends = self._ends - start
+        side = ahead[0] * ends[..., 1] - ahead[1] * ends[..., 0]
+        along = ends @ ahead
+        beside = (side.min(axis=1) > AIM_M) | (side.max(axis=1) < -AIM_M)
+        return np.flatnonzero(~beside & (along.max(axis=1) > -AIM_M))
 
     def _first_of(self, found: NDArray[np.int64]) -> Vertex:
         """Vertex of a number; of several, the first in the order of the chains."""
