@@ -11,7 +11,7 @@ KILLS ?= 200
 PEERS ?= .venv-peers
 
 .DEFAULT_GOAL := help
-.PHONY: help install maps experiments test test-lowest lint types contracts fuzz torture bench bench-peers bench-growth bench-evaluation bench-loss docs dist clean
+.PHONY: help install maps experiments test test-lowest lint types contracts fuzz torture bench bench-peers bench-growth bench-evaluation bench-fields bench-loss docs dist clean
 
 help: ## list these targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
@@ -69,6 +69,9 @@ bench-growth: install ## measure time and memory against cells, rooms and order,
 
 bench-evaluation: install ## measure evaluations of known paths beside a new trace, for docs/performance.md
 	$(BIN)/python tests/benchmarks/evaluation.py
+
+bench-fields: install ## measure an unknown polarisation and a further frequency, for docs/performance.md
+	$(BIN)/python tests/benchmarks/fields.py
 
 bench-loss: install ## measure limits by loss beside a number of transmissions, for docs/performance.md
 	$(BIN)/python tests/benchmarks/loss_limits.py

@@ -67,6 +67,11 @@ class TraceConfig:
         if self.max_paths is not None:
             self._check_integer("max_paths", 1, MOST_PATHS)
 
+    @property
+    def is_limited(self) -> bool:
+        """Whether a power or a loss limits paths, which then depend on the materials too."""
+        return max(self.min_power_dbm, -self.dynamic_range_db) > -math.inf
+
     def _check_integer(self, name: str, least: int, most: int) -> None:
         """Check a whole number, and keep it as int: kernels are compiled for each type."""
         value = getattr(self, name)

@@ -6,7 +6,6 @@ surface, angle and polarisation frame of each interaction, exactly as a new trac
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -230,5 +229,4 @@ def trace_points(
         )
         classes = path_classes(tracing.shared_by(workers.n))
         kept = keep_paths(workers, classes, evaluation, len(points), max_left_out, tracing.guard)
-    is_limited = evaluation.min_power > 0.0 or math.isfinite(config.dynamic_range_db)
-    return TracedPoints(scene.slabs, transmitter, receive_antenna, kept, is_limited)
+    return TracedPoints(scene.slabs, transmitter, receive_antenna, kept, config.is_limited)

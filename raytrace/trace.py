@@ -3,10 +3,10 @@
 import platform
 import time
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -162,32 +162,61 @@ def compute_radio_map(
         Where cells are so near to the transmitter that their power is bounded by the transmit
         power.
     """
-    started = time.perf_counter()
-    config = config or TraceConfig()
-    evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
-    with watched_compilation() as compilation, Workers(threads, stop) as workers:
-        guard = workers.guard(memory_limit(max_memory_bytes))
+    run = _Run(threads, progress, stop, max_memory_bytes)
+    ends = [transmitter], receive_antenna
+    return _maps_at(scene, ends, grid, config or TraceConfig(), run)[0]
+
+
+class _Run(NamedTuple):
+    """How a map is computed, see `compute_radio_map`."""
+
+    threads: int | None
+    progress: Progress | None
+    stop: Stop | None
+    max_memory_bytes: int | None
+
+
+def _maps_at(
+    scene: Scene,
+    ends: tuple[Sequence[Transmitter], Antenna | None],
+    grid: Grid,
+    config: TraceConfig,
+    run: _Run,
+) -> list[RadioMap]:
+    """Return the maps of transmitters at one place, whose beams are grown once.
+
+    `ends` holds the transmitters and the receivers' antenna.
+    """
+    started, (transmitters, receive_antenna) = time.perf_counter(), ends
+    evaluations = [
+        evaluation_of(scene.slabs, each, config, receive_antenna) for each in transmitters
+    ]
+    with watched_compilation() as compilation, Workers(run.threads, run.stop) as workers:
+        guard = workers.guard(memory_limit(run.max_memory_bytes))
         n_cells = grid.x.size * grid.y.size
-        needed_bytes = cells_bytes(scene, n_cells, config, workers.n, evaluation.n_pairs)
-        guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
-        points = grid.points()
-        position = transmitter.position
-        tracing = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluation
+        needed_bytes = sum(
+            cells_bytes(scene, n_cells, config, workers.n, each.n_pairs) for each in evaluations
         )
-        sums = _sum_paths(workers, tracing, evaluation, progress)
-    straight_m = np.linalg.norm(points - np.array(transmitter.position), axis=1)
-    _warn_of_near_cells(sums, points)
-    layers = layers_of(sums, straight_m, transmitter.power_dbm)
-    on_grid: dict[str, Any] = {n: layer.reshape(grid.shape) for n, layer in layers.items()}
-    return RadioMap(
-        **on_grid,
-        grid=grid,
-        transmitter=transmitter,
-        config=config,
-        provenance=_provenance(scene, time.perf_counter() - started - compilation.seconds),
-        receive_antenna=receive_antenna or HalfWaveDipole(),
-    )
+        guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
+        points, position = grid.points(), transmitters[0].position
+        tracing = workers.run(
+            prepare_within_range, scene, position, points, config, guard, evaluations[0]
+        )
+        found = _sum_paths(workers, tracing, evaluations, run.progress)
+    seconds = (time.perf_counter() - started - compilation.seconds) / len(found)
+    straight_m = np.linalg.norm(points - np.array(position), axis=1)
+    _warn_of_near_cells(found[0], points)
+    maps: list[RadioMap] = []
+    for transmitter, sums in zip(transmitters, found, strict=True):
+        layers = layers_of(sums, straight_m, transmitter.power_dbm)
+        on_grid: dict[str, Any] = {n: layer.reshape(grid.shape) for n, layer in layers.items()}
+        made = _provenance(scene, seconds)
+        antenna = receive_antenna or HalfWaveDipole()
+        maps.append(RadioMap(
+            **on_grid, grid=grid, transmitter=transmitter, config=config, provenance=made,
+            receive_antenna=antenna,
+        ))  # fmt: skip
+    return maps
 
 
 def compute_radio_maps(
@@ -203,6 +232,10 @@ def compute_radio_maps(
     max_memory_bytes: int | None = None,
 ) -> TransmitterMaps:
     """Sum every path at each cell of a grid, for each of several transmitters.
+
+    The beams from transmitters at one place, such as those of an access point at several
+    frequencies, are grown once for all, unless a power or a loss limits them: then they hold what
+    is strong at one frequency. The maps are those of `compute_radio_map`.
 
     Parameters
     ----------
@@ -223,27 +256,42 @@ def compute_radio_maps(
         As for `compute_radio_map`.
     """
     maps: dict[str, RadioMap] = {}
-    for number, (name, transmitter) in enumerate(transmitters.items()):
+    config = config or TraceConfig()
+    for names in _together(transmitters, config):
+        part = part_of(progress, len(maps), len(transmitters), len(names))
+        run = _Run(threads, part, stop, max_memory_bytes)
+        ends = [transmitters[name] for name in names], receive_antenna
         try:
-            maps[name] = compute_radio_map(
-                scene, transmitter, grid, config, receive_antenna=receive_antenna,
-                threads=threads, progress=part_of(progress, number, len(transmitters)),
-                stop=stop, max_memory_bytes=max_memory_bytes,
-            )  # fmt: skip
+            found = _maps_at(scene, ends, grid, config, run)
         except SceneError as error:
-            raise SceneError(f"transmitter {name!r}: {error}") from error
-    return TransmitterMaps(maps)
+            raise SceneError(f"transmitter {names[0]!r}: {error}") from error
+        maps.update(zip(names, found, strict=True))
+    return TransmitterMaps({name: maps[name] for name in transmitters})
+
+
+def _together(transmitters: Mapping[str, Transmitter], config: TraceConfig) -> list[list[str]]:
+    """Names of transmitters, those that beams can be grown once for together."""
+    if config.is_limited:
+        return [[name] for name in transmitters]
+    groups: dict[object, list[str]] = {}
+    for name, each in transmitters.items():
+        groups.setdefault(each.position, []).append(name)
+    return list(groups.values())
 
 
 PARTS = 1000
 """Parts that `compute_radio_maps` divides the work for a transmitter into."""
 
 
-def part_of(progress: Progress | None, number: int, count: int) -> Progress | None:
-    """Progress of one of several equal pieces of work, as progress of all."""
+def part_of(
+    progress: Progress | None, number: int, count: int, several: int = 1
+) -> Progress | None:
+    """Progress of one or several of equal pieces of work, as progress of all."""
     if progress is None:
         return None
-    return lambda done, total: progress(number * PARTS + PARTS * done // total, count * PARTS)
+    return lambda done, total: progress(
+        number * PARTS + several * PARTS * done // total, count * PARTS
+    )
 
 
 def received_power(
@@ -297,7 +345,7 @@ def received_power(
         tracing = workers.run(
             prepare_within_range, scene, position, points, config, guard, evaluation
         )
-        sums = _sum_paths(workers, tracing, evaluation, progress)
+        (sums,) = _sum_paths(workers, tracing, [evaluation], progress)
     return received_dbm(sums.power, transmitter.power_dbm)
 
 
@@ -312,13 +360,13 @@ def _positions(points: Floats, name: str) -> Floats:
 def _sum_paths(
     workers: Workers,
     tracing: Tracing,
-    evaluation: Evaluation,
+    evaluations: Sequence[Evaluation],
     progress: Progress | None,
-) -> Sums:
-    """Sum all paths at each receiver of a tracing."""
+) -> list[Sums]:
+    """Sum all paths at each receiver of a tracing, with each of several evaluations."""
     classes = path_classes(tracing.shared_by(workers.n))
     max_paths = tracing.config.max_paths
-    return sum_paths(workers, classes, [evaluation], max_paths=max_paths, progress=progress)[0]
+    return sum_paths(workers, classes, evaluations, max_paths=max_paths, progress=progress)
 
 
 def _warn_of_near_cells(sums: Sums, points: Floats) -> None:
@@ -331,7 +379,7 @@ def _warn_of_near_cells(sums: Sums, points: Floats) -> None:
             f"formulas, the first at ({x:g}, {y:g}, {z:g}): their power is set to the transmit "
             "power; move the transmitter off the cell centre, or receive at another height",
             SceneWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 

@@ -190,7 +190,7 @@ def calibrate(
     work = _Work(traced, of, groups, traced.levels_db(of, plan_values(of), slopes=True))
     found = work.fitted(np.ones(len(survey), dtype=bool))
     settled = True
-    if found.told and settings.is_limited:
+    if found.told and settings.config.is_limited:
         work, found, settled = _grown_anew(work, found, scene)
     steps.advance()
     if not found.told:

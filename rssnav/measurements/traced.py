@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -50,12 +49,6 @@ class TraceSettings:
     is_antenna_chosen: bool = False
     threads: int | None = None
     max_memory_bytes: int | None = None
-
-    @property
-    def is_limited(self) -> bool:
-        """Whether a power or a loss limits the paths, so that they depend on the materials."""
-        limits = self.config.min_power_dbm, -self.config.dynamic_range_db
-        return max(limits) > -math.inf
 
     def transmitter(self, survey: Survey, number: int) -> Transmitter:
         """Return a survey's transmitter as the tracer takes it."""
