@@ -74,6 +74,14 @@ def begin_all(moves: Moves, sensor: Sensor, fleet: Fleet) -> None:
 
 
 @jit()
+def begin_some(moves: Moves, sensor: Sensor, fleet: Fleet, chosen: NDArray[np.bool_]) -> None:
+    """Begin an episode of the chosen flights (N,)."""
+    for i in range(chosen.size):
+        if chosen[i]:
+            begin_flight(moves, sensor, fleet, i)
+
+
+@jit()
 def step_running(moves: Moves, sensor: Sensor, fleet: Fleet, actions: NDArray[np.int64]) -> None:
     """Fly an action of every flight that is not over."""
     for i in range(fleet.status.size):

@@ -2,8 +2,11 @@ from .energy import MultirotorEnergy
 from .flights import Flights, fly
 from .layout import Layout
 from .mission import Mission
+from .model_learning import learn_by_model
 from .modes import ModeProcess
 from .observation import Observation
+from .places import mission_of_places, spread_places
+from .planning import Plan, plan_mission
 from .policy import HOVER, GreedyTable, Policy, RandomPolicy, Seen
 from .task import ReadingAbove, Task, Within
 
@@ -16,6 +19,7 @@ __all__ = [
     "ModeProcess",
     "MultirotorEnergy",
     "Observation",
+    "Plan",
     "Policy",
     "RandomPolicy",
     "ReadingAbove",
@@ -23,4 +27,8 @@ __all__ = [
     "Task",
     "Within",
     "fly",
+    "learn_by_model",
+    "mission_of_places",
+    "plan_mission",
+    "spread_places",
 ]
