@@ -129,7 +129,7 @@ def read_spec(text: str, path: Path) -> DatasetSpec:
     """Read the text of a spec; see `load_spec`."""
     try:
         values = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # integers of thousands of digits, too
         raise DatasetError(f"not TOML: {error}", path) from error
     top = Table(path, "", values).only(*KEYS)
     transmitters = top.table("transmitters").only(

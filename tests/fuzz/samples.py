@@ -20,6 +20,7 @@ import dxf_drawings
 import ifc_models
 import small_plans
 import small_worlds
+from small_datasets import SPEC
 
 import floorplans
 from floorplans.exporters import export
@@ -34,6 +35,9 @@ from raytrace import (
     compute_radio_map,
 )
 from rssnav import LocationAgent, RssAgent, train
+from rssnav.datasets.spec import read_spec
+from rssnav.datasets.tracing import Limits
+from rssnav.datasets.work import make_plan
 
 FOLDER = "FUZZ_SAMPLES"
 """Environment variable: the folder in which samples are kept for other processes."""
@@ -209,6 +213,16 @@ def antenna() -> bytes:
     rows.writerow(["theta_deg", "phi_deg", "gain_dbi"])
     rows.writerows((theta, phi, 2.0) for theta in (0, 90, 180) for phi in (0, 120, 240, 360))
     return text.getvalue().encode()
+
+
+def dataset_plan_file() -> bytes:
+    """All maps of a plan of a small data set, with paths."""
+    spec = read_spec(f"{SPEC}\n[keep]\nstrongest_paths = 1\n", Path("spec.toml"))
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "spec.toml").write_text(spec.text)
+        source = spec.plans[0]
+        make_plan(source, spec.configuration, Path(folder), Limits())
+        return (Path(folder) / source.file).read_bytes()
 
 
 def survey_text() -> str:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from hypothesis import strategies as st
+from small_datasets import SPEC
 
 import floorplans
 from floorplans import PlanError
@@ -32,6 +33,9 @@ from raytrace import (
     TransmitterMaps,
 )
 from rssnav import ResultFileError, TrainingResult
+from rssnav.datasets.container import read_plan_file
+from rssnav.datasets.errors import DatasetError
+from rssnav.datasets.spec import load_spec
 from rssnav.measurements.survey import SurveyError, SurveyTransmitter
 from rssnav.measurements.survey_csv import read_survey
 from rssnav.measurements.validation import validate
@@ -203,6 +207,13 @@ TARGETS = {
     "ros": Target(_ros_maps, _run_ros_map, (PlanError,), ".zip"),
     "antenna": Target(
         _texts(samples.antenna), PatternTable.from_csv, (AntennaError,), ".csv", by_lines=True
+    ),
+    "spec": Target(
+        _texts(lambda: SPEC.encode()), load_spec, (DatasetError, AntennaError), ".toml",
+        by_lines=True
+    ),
+    "dataset": Target(
+        lambda: damaged_hdf5(samples.dataset_plan_file()), read_plan_file, (DatasetError,), ".h5"
     ),
     "survey": Target(
         _texts(lambda: samples.survey_text().encode()), _run_survey, (SurveyError,), ".csv",
