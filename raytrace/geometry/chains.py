@@ -99,7 +99,9 @@ class Chains:
         ray = shapely.LineString([start + ahead * AHEAD_M, start + ahead * FARTHEST_M])
         lines = self.geometries()
         met = self._met(start, ahead)
-        hits, line = shapely.get_coordinates(shapely.intersection(ray, lines[met]), return_index=True)
+        hits, line = shapely.get_coordinates(
+            shapely.intersection(ray, lines[met]), return_index=True
+        )
         chain = met[line]
         away = np.hypot(*(hits - start).T)
         if len(hits):
