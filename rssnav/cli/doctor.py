@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 import floorplans
-from raytrace import Isotropic, TraceConfig, Transmitter, received_power, trace_paths
+from raytrace import TraceConfig, Transmitter, received_power, trace_paths
 from raytrace.compilation import watched_compilation
 from raytrace.radio.itu import DEFAULT_EDITION
 from raytrace.threads import n_threads
@@ -21,6 +21,7 @@ from rssnav.cli.failures import EXIT_FAILURE, print_error
 from rssnav.cli.options import Json, examples
 from rssnav.kernel_cache import CacheState, learning_cache, tracer_cache
 from rssnav.maps import make_map
+from rssnav.presets import PRESETS
 from rssnav.scenes import scene_of
 
 LIBRARIES = ("numpy", "numba", "scipy", "shapely", "trimesh", "h5py", "matplotlib", "typer")
@@ -74,10 +75,11 @@ def _load_kernels() -> None:
     config = TraceConfig(max_reflections=1, max_diffractions=1, max_transmissions=1)
     radio_map = make_map(plan, config=config)
     receiver = np.array([[*plan.require_start(), 1.0]])
-    scene, unknown = scene_of(plan), Isotropic(polarisation="mean")
+    scene, building = scene_of(plan), PRESETS["building"]
     trace_paths(scene, radio_map.transmitter, receiver, config)
-    sender = replace(radio_map.transmitter, antenna=unknown)
-    received_power(scene, sender, receiver, config, receive_antenna=unknown)
+    sender = replace(radio_map.transmitter, antenna=building.antenna)
+    config = replace(building.config, max_reflections=1)
+    received_power(scene, sender, receiver, config, receive_antenna=building.antenna)
     world = GridWorld.from_map(plan, radio_map)
     for agent in (LocationAgent(), RssAgent(states=ToleranceStates(1.0), terminal_dbm=-30.0)):
         train(world, agent, runs=1, episodes=1)
