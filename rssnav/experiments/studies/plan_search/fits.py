@@ -38,6 +38,11 @@ class Piece:
     scenario: int
     block: int
 
+    @property
+    def label(self) -> str:
+        """Name of the block in files and tables."""
+        return "built-in" if self.block == BUILT_IN else f"block {self.block}"
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:
@@ -117,7 +122,7 @@ def _fit(piece: Piece, number: int, plan: FloorPlan, conditions: Conditions) -> 
         for agent in AGENTS:
             key = Configuration(piece.scenario, agent, speed)
             trained[key] = conditions.train(
-                f"plan {piece.block} {number} {key.name}",
+                f"{piece.label} {number} {key.name}",
                 world,
                 AGENTS[agent],
                 EPISODE_LIMIT,

@@ -41,7 +41,7 @@ def fits(found: Sequence[Fit]) -> Table:
 def _row(fit: Fit) -> tuple[Cell, ...]:
     return (
         fit.piece.scenario,
-        "built-in" if fit.piece.block == BUILT_IN else fit.piece.block,
+        fit.piece.label,
         fit.number,
         _percent(fit.worst()),
         *(_percent(value) for value in fit.deviation.values()),
