@@ -113,7 +113,9 @@ def main() -> int:
             code = command(spec, folder, "--threads", "2").wait()
             if code != 0 or bits(folder) != wanted:
                 n_faults += 1
-                print(f"series {series}: exit code {code}, or other bits", flush=True)
+                other = set(bits(folder).items()) ^ set(wanted.items())
+                names = sorted({name for name, _ in other})
+                print(f"series {series}: exit code {code}, different: {names}", flush=True)
     counted = ", ".join(f"{count} {name}" for name, count in killed.items())
     print(f"{sum(killed.values())} kills ({counted}): {n_faults} faults")
     return int(n_faults > 0)
