@@ -92,7 +92,7 @@ def test_explorer_hatches_the_same_cells() -> None:
     def ignore(*_: object) -> None:
         pass
 
-    figure = MapFigure(PLAN, 2.0, on_move=ignore, on_drag=ignore, on_tap=ignore)
+    figure = MapFigure(PLAN, 2.0, on_move=ignore, on_drag=ignore, on_tap=ignore, on_step=ignore)
     figure.show_map(radio_map)
     (hatched,) = (
         r for r in figure.model.renderers if getattr(r.glyph, "hatch_pattern", None) == "cross"

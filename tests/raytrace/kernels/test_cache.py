@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numba
 import pytest
-from rssnav.kernels.q_learning import learn
 
 import raytrace.kernels
 import rssnav.kernels
@@ -15,6 +14,7 @@ from raytrace.kernels.beams import grow_tree_arrays
 from raytrace.kernels.cache import KernelCache, cache_folder, sources_digest
 from raytrace.kernels.compiling import jit as tracer_jit
 from rssnav.kernels.compiling import jit as loop_jit
+from rssnav.kernels.learning import fill_greedy
 
 
 @pytest.fixture
@@ -55,7 +55,7 @@ def test_moving_text_between_sources_changes_the_digest(sources) -> None:
 
 
 @pytest.mark.parametrize(
-    ("package", "kernel"), [(raytrace.kernels, grow_tree_arrays), (rssnav.kernels, learn)]
+    ("package", "kernel"), [(raytrace.kernels, grow_tree_arrays), (rssnav.kernels, fill_greedy)]
 )
 def test_kernels_are_kept_in_the_folder_of_their_sources(package, kernel) -> None:
     assert sources_digest(Path(package.__path__[0])) in str(kernel.stats.cache_path)

@@ -33,7 +33,7 @@ NONE = np.empty(0)
 def outcome(alternative, key, lengths_m, runs=2, episodes=(10.0, 20.0)):
     lengths = np.array(lengths_m, dtype=float)
     flown = np.array(episodes, dtype=float)
-    return Outcome(alternative, key, runs, flown, 100.0 * flown, lengths, lengths / 2.0)
+    return Outcome(alternative, key, runs, flown, 100.0 * flown, lengths, lengths / 2.0, lengths)
 
 
 def test_every_alternative_differs_from_our_interpretation_in_one_respect():
