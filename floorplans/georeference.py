@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -66,7 +65,7 @@ def check_origin(origin: GeoOrigin) -> None:
     for key, limit in limits.items():
         place: Place = ("origin", key)
         value = getattr(origin, key)
-        if not (isfinite(value) and abs(value) <= limit):
+        if not abs(value) <= limit:
             raise PlanError(f"expected {-limit:g} to {limit:g} [degrees]", place, value)
 
 

@@ -9,7 +9,6 @@ classes that the caller passes; it imports no module.
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rssnav.agents import Agent, LocationAgent, RssAgent
+from rssnav.arguments import is_finite
 from rssnav.discrete_states import (
     ExactStates,
     Fluctuation,
@@ -155,7 +155,7 @@ def _instance(description: AgentDescription, known: Mapping[str, type]) -> Any:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and is_finite(value)
 
 
 _IS_OF_TYPE: dict[str, Callable[[Any], bool]] = {

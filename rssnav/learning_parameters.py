@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from rssnav.arguments import require
+from rssnav.arguments import is_finite, require
 
 LearningRule = Literal["q_learning", "sarsa", "double_q"]
 """Names of the learning rules; :mod:`rssnav.learning_rules` holds the loop of each."""
@@ -81,7 +81,7 @@ class QLearning:
         require(0.0 <= self.eta < math.inf, "eta", self.eta, "a finite number of at least 0")
         for name in ("goal_reward", "initial_q"):
             value = getattr(self, name)
-            require(math.isfinite(value), name, value, "a finite number")
+            require(is_finite(value), name, value, "a finite number")
         whole = 1 <= self.max_steps < 2**31 and self.max_steps % 1 == 0
         require(whole, "max_steps", self.max_steps, "an integer from 1 to 2147483647")
         for name, choices in _CHOICES.items():

@@ -117,7 +117,8 @@ def _near_walls(
     The reach is counted from the walls' bodies if `body` is 1, from their centre lines if it is 0.
     """
     lines, ends = centre_lines(walls), _points(points)
-    across_m = reach_m + body * np.array([wall.thickness_m for wall in walls]) / 2
+    thickness_m = np.array([max(wall.thickness_m, 0.0) for wall in walls])  # as drawn, unchecked
+    across_m = reach_m + body * thickness_m / 2
     pairs: list[NDArray[np.int64]] = []
     for among in _alike(across_m):
         distance_m = _WIDER * np.hypot(across_m[among].max(), across_m).repeat(2)

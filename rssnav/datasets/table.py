@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import difflib
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rssnav.arguments import is_finite
 from rssnav.datasets.errors import DatasetError
 
 _REQUIRED: Any = object()
@@ -127,7 +127,7 @@ class Table:
 
 def _is_number(value: Any, low: float, high: float) -> bool:
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_number and math.isfinite(value) and low <= value <= high
+    return is_number and is_finite(value) and low <= value <= high
 
 
 def _short(value: object) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -13,6 +12,7 @@ from bokeh.plotting import figure
 
 from floorplans import FloorPlan
 from floorplans.pictures.legend import SOURCE, START
+from rssnav.arguments import is_finite
 
 MARKS = ("source", "start")
 MARK_REACH = 0.03
@@ -123,4 +123,4 @@ def _columns(plan: FloorPlan) -> dict[str, Any]:
 
 def are_numbers(*values: object) -> bool:
     """Whether all values, which come from the browser, are finite numbers."""
-    return all(isinstance(value, int | float) and math.isfinite(value) for value in values)
+    return all(isinstance(value, int | float) and is_finite(value) for value in values)

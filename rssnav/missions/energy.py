@@ -32,7 +32,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.arguments import require
+from rssnav.arguments import is_finite, require
 
 _GRAVITY = 9.81
 
@@ -83,8 +83,8 @@ class MultirotorEnergy:
     def __post_init__(self) -> None:
         for name in ("mass_kg", "disc_area_m2", "tip_speed_m_s", "air_density", "efficiency"):
             value = getattr(self, name)
-            require(0.0 < value < math.inf, name, value, "a positive number")
-        least = 0.0 <= self.turn_j_per_deg < math.inf
+            require(value > 0.0 and is_finite(value), name, value, "a positive number")
+        least = self.turn_j_per_deg >= 0.0 and is_finite(self.turn_j_per_deg)
         require(least, "turn_j_per_deg", self.turn_j_per_deg, "a number of at least 0 J")
         kinds = ("angle", "braking", "free")
         require(self.turns in kinds, "turns", self.turns, " or ".join(map(repr, kinds)))

@@ -11,6 +11,9 @@ from rssnav.arguments import require
 
 _TOLERANCE = 1e-9
 
+MOST_MODES = 10_000
+"""The transition matrix of so many modes takes 0.8 GB."""
+
 
 @dataclass(frozen=True, eq=False)
 class ModeProcess:
@@ -52,7 +55,7 @@ class ModeProcess:
     @classmethod
     def jumping(cls, n_modes: int, probability: float) -> ModeProcess:
         """Modes of equal probability, drawn anew every second with a probability."""
-        require(n_modes >= 1, "n_modes", n_modes, "at least 1")
+        require(1 <= n_modes <= MOST_MODES, "n_modes", n_modes, f"1 to {MOST_MODES}")
         within = 0.0 <= probability <= 1.0
         require(within, "probability", probability, "a number in [0, 1]")
         even = np.full(n_modes, 1.0 / n_modes)

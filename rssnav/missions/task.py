@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.arguments import require
+from rssnav.arguments import is_finite, require
 from rssnav.missions.layout import WorldError
 from rssnav.missions.mission import Mission
 
@@ -52,7 +52,7 @@ class ReadingAbove:
     confirmations: int = 1
 
     def __post_init__(self) -> None:
-        require(math.isfinite(self.level_dbm), "level_dbm", self.level_dbm, "a finite level [dBm]")
+        require(is_finite(self.level_dbm), "level_dbm", self.level_dbm, "a finite level [dBm]")
         require(self.confirmations >= 1, "confirmations", self.confirmations, "at least 1")
 
     def cells(self, mission: Mission) -> NDArray[np.bool_]:
@@ -79,7 +79,7 @@ class Within:
     in_sight_dbm: float = -math.inf
 
     def __post_init__(self) -> None:
-        positive = 0.0 < self.distance_m < math.inf
+        positive = self.distance_m > 0.0 and is_finite(self.distance_m)
         require(positive, "distance_m", self.distance_m, "a positive number")
 
     def cells(self, mission: Mission) -> NDArray[np.bool_]:
@@ -139,9 +139,10 @@ class Task:
             require(value in choices, name, value, " or ".join(map(repr, choices)))
         for name in ("goal_reward", "per_second", "per_kj"):
             value = getattr(self, name)
-            require(math.isfinite(value), name, value, "a finite number")
+            require(is_finite(value), name, value, "a finite number")
         require(self.battery_kj > 0.0, "battery_kj", self.battery_kj, "a positive number")
-        require(self.max_steps >= 1, "max_steps", self.max_steps, "at least 1")
+        whole = 1 <= self.max_steps < 2**31
+        require(whole, "max_steps", self.max_steps, "an integer from 1 to 2147483647")
         if self.energy is None and (self.per_kj != 0.0 or self.battery_kj < math.inf):
             raise ValueError(
                 "energy: per_kj and battery_kj need a model of energy, such as MultirotorEnergy()"

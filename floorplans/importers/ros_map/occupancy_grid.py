@@ -6,6 +6,7 @@ above `occupied_thresh` it is occupied, below `free_thresh` free, and otherwise 
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -195,7 +196,7 @@ def _metadata(data: Mapping[str, Any]) -> MapMetadata:
 
 
 def _number(value: object, key: str) -> float:
-    if not isinstance(value, int | float) or not isfinite(value):
+    if not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
         raise PlanError("expected a finite number", (key,))
     return float(value)
 

@@ -179,3 +179,11 @@ def test_two_thousand_walls_are_repaired():
 def test_a_wall_of_no_length_is_left_for_the_check() -> None:
     wall = Wall((6.0, 0.0), (6.0, 0.0), "concrete", 0.2, 3.0)
     assert direction(wall) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("thickness_m", [-1.0, -0.2, -1e-9, 0.0])
+def test_a_wall_of_no_thickness_is_left_to_the_checks(thickness_m: float) -> None:
+    room = [wall((0, 0), (4, 0)), wall((4, 0.05), (4, 3)), wall((2, 0), (2, 3), thickness_m)]
+    repaired = repair_walls(room).walls
+    assert [w.thickness_m for w in repaired if w.start == (2, 0)] == [thickness_m]
+    assert (4.0, 0.0) in {end for w in repaired for end in (w.start, w.end)}

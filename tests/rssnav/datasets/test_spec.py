@@ -41,6 +41,12 @@ def test_a_wrong_spec_is_refused_by_file_and_key(old: str) -> None:
     assert str(caught.value).startswith("spec.toml: ")
 
 
+@pytest.mark.parametrize("key", ["area_m2 = 50", "cell_size_m = 2.0", "seeds = 3"])
+def test_numbers_of_any_size_are_read(key: str) -> None:
+    with pytest.raises(DatasetError, match="expected"):
+        spec_of(edited(key, f"{key.partition('=')[0]}= 1{'0' * 400}"))
+
+
 def test_a_spec_that_is_no_toml_is_refused() -> None:
     with pytest.raises(DatasetError, match=r"spec\.toml: not TOML"):
         spec_of("name = ")
