@@ -10,6 +10,6 @@ process that is killed leaves its temporary file behind; the next write to the s
 machine removes it. All packages of this project write their files this way.
 """
 
-from atomicfiles.writing import atomic_write, atomic_write_all
+from atomicfiles.writing import atomic_write, atomic_write_all, temporaries
 
-__all__ = ["atomic_write", "atomic_write_all"]
+__all__ = ["atomic_write", "atomic_write_all", "temporaries"]

@@ -3,7 +3,7 @@
 import errno
 import os
 import socket
-from collections.abc import Generator, Iterable, Mapping
+from collections.abc import Generator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
@@ -90,13 +90,15 @@ def _remove_abandoned(path: Path) -> None:
     """Remove the temporary files of writers to `path` that this machine knows to be dead."""
     if fcntl is None:
         return
-    for left in _matching(path.parent, _prefix(path), f".part{path.suffix}"):
+    for left in temporaries(path):
         with suppress(OSError), left.open("rb") as file:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             left.unlink()
 
 
-def _matching(folder: Path, prefix: str, suffix: str) -> Iterable[Path]:
+def temporaries(path: Path) -> list[Path]:
+    """Return the temporary files of all writers to a path, dead ones included."""
+    folder, prefix, suffix = path.parent, _prefix(path), f".part{path.suffix}"
     names = os.listdir(folder)
     return [folder / name for name in names if name.startswith(prefix) and name.endswith(suffix)]
 

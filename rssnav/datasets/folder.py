@@ -6,7 +6,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 
-from atomicfiles import atomic_write
+from atomicfiles import atomic_write, temporaries
 from rssnav.datasets.errors import DatasetError
 from rssnav.datasets.spec import DatasetSpec, read_spec
 from rssnav.datasets.work import MARK
@@ -50,7 +50,8 @@ def check_new(folder: Path) -> None:
     """Raise DatasetError for a folder that holds something else than a data set."""
     if not folder.exists() or (folder / MARK).is_file():
         return
-    others = [path.name for path in folder.iterdir() if path.name != STATE]
+    ours = {folder / STATE, *temporaries(folder / MARK)}  # of a run that was killed at once
+    others = [path.name for path in folder.iterdir() if path not in ours]
     if others:
         raise DatasetError(
             f"holds {others[0]!r} and is no data set: expected an empty or a new folder", folder

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import time
 import warnings
 from collections import deque
@@ -211,6 +212,7 @@ def _local_cluster(workers: int) -> Generator[Any]:
     environment = "distributed.nanny.pre-spawn-environ"
     found = config.get(environment, default={})
     with (
+        _silent_tracker(),
         config.set({environment: {**found, **ONE_THREAD}}),
         LocalCluster(
             n_workers=workers,
@@ -222,6 +224,21 @@ def _local_cluster(workers: int) -> Generator[Any]:
         _closing(Client(cluster, set_as_default=False)) as client,
     ):
         yield client
+
+
+@contextmanager
+def _silent_tracker() -> Generator[None]:
+    """Let multiprocessing clean up after an interrupt without a warning for each semaphore."""
+    before = os.environ.get("PYTHONWARNINGS")
+    ignore = "ignore::UserWarning:multiprocessing.resource_tracker"
+    os.environ["PYTHONWARNINGS"] = f"{before},{ignore}" if before else ignore
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = before
 
 
 @contextmanager

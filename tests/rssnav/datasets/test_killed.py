@@ -7,10 +7,14 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from small_datasets import bits, edited, made
+
+from atomicfiles import atomic_write
+from rssnav.datasets.work import MARK
 
 TEXT = edited("seeds = 3", "seeds = 6")
 
@@ -34,6 +38,17 @@ def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("made") / "whole"
     made(folder, TEXT)
     return bits(folder)
+
+
+def test_a_run_that_was_killed_at_its_first_file_leaves_a_folder_for_the_next(tmp_path) -> None:
+    folder = tmp_path / "set"
+    folder.mkdir()
+    with suppress(RuntimeError), atomic_write(folder / MARK) as temporary:
+        left = temporary.with_name(temporary.name.replace(".part", "0.part"))
+        left.write_text("half of a spec")
+        raise RuntimeError
+    made(folder, TEXT.replace("seeds = 6", "seeds = 3"))
+    assert not left.exists()
 
 
 def test_a_killed_command_goes_on_to_the_same_bits(whole, tmp_path) -> None:
