@@ -1,11 +1,14 @@
 """Arguments out of range."""
 
-import sys
+import math
 
 
 def is_finite(value: float) -> bool:
-    """Whether a number is finite as float64; whole numbers of any size are compared as they are."""
-    return -sys.float_info.max <= value <= sys.float_info.max
+    """Whether a number of any type is finite as float64; whole numbers may be too large for it."""
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def require(holds: bool, name: str, value: object, expected: str) -> None:

@@ -167,6 +167,7 @@ def _array(
     dataset.attrs.update(units=words[0], long_name=words[1])
     for number, dimension in enumerate(dimensions):
         dataset.dims[number].attach_scale(file[dimension])
+    file.flush()  # otherwise the place of its chunks depends on when Python drops the object
 
 
 def read_plan_file(path: Path) -> tuple[PlanMaps, About]:

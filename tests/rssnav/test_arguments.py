@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,6 +21,11 @@ HUGE = 10**400
 @given(st.floats())
 def test_finite_floats_are_those_of_the_standard(value: float) -> None:
     assert is_finite(value) == math.isfinite(value)
+
+
+@pytest.mark.parametrize("kind", [np.float16, np.float32, np.float64, np.int8, np.int64])
+def test_numbers_of_numpy_are_numbers(kind) -> None:
+    assert is_finite(kind(4))
 
 
 @given(st.integers(-(10**400), 10**400))

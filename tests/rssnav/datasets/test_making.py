@@ -7,6 +7,7 @@ import json
 import threading
 from dataclasses import replace
 
+import h5py
 import numpy as np
 import pytest
 from small_datasets import SPEC, bits, edited, made, spec_of
@@ -14,7 +15,7 @@ from small_datasets import SPEC, bits, edited, made, spec_of
 import floorplans
 from raytrace import Grid, Isotropic, TraceConfig, Transmitter, compute_radio_map
 from rssnav.datasets.checks import problems
-from rssnav.datasets.container import read_plan_file
+from rssnav.datasets.container import read_plan_file, write_plan_file
 from rssnav.datasets.cost import estimated
 from rssnav.datasets.engines.job import Job
 from rssnav.datasets.engines.threads import Threads
@@ -80,6 +81,21 @@ class Ending:
         """Trace some plans."""
         Threads(1).run(replace(job, sources=job.sources[: self.after]))
         raise KeyboardInterrupt
+
+
+def test_bits_do_not_depend_on_when_python_drops_objects(whole, tmp_path, monkeypatch) -> None:
+    """As where the interpreter is interrupted, and a traceback holds what is being written."""
+    file = next(whole.glob("*/*/flat-000001.h5"))
+    kept: list[h5py.Dataset] = []
+    create = h5py.Group.create_dataset
+
+    def create_and_keep(*arguments, **options):
+        kept.append(create(*arguments, **options))
+        return kept[-1]
+
+    monkeypatch.setattr(h5py.Group, "create_dataset", create_and_keep)
+    assert write_plan_file(*read_plan_file(file), tmp_path / file.name) == file.read_bytes()
+    assert kept
 
 
 @pytest.mark.parametrize("lose_journal", [False, True])
