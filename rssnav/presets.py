@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import floorplans
@@ -44,6 +45,18 @@ PRESETS: dict[PresetName, Preset] = {
 }
 """``paper`` has opaque walls and vertical dipoles, as the reproduced paper has; ``building`` lets
 waves through any number of walls, and knows nothing of the antennas."""
+
+
+def with_limits(config: TraceConfig, given: Mapping[str, Any]) -> TraceConfig:
+    """Return limits of a trace with some others.
+
+    A number of transmissions goes with no limit by loss, and no number (None) with one, unless that
+    is given too.
+    """
+    if "max_transmissions" in given:
+        limits = BY_LOSS if given["max_transmissions"] is None else BY_NUMBER
+        given = {**limits, **given}
+    return replace(config, **given)
 
 
 def default_preset(plan: str) -> PresetName:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,7 +15,7 @@ from floorplans import FloorPlan
 from raytrace import Antenna, TraceConfig, Transmitter
 from rssnav.cli.options import UNLIMITED
 from rssnav.maps import HEIGHT_M
-from rssnav.presets import BY_LOSS, BY_NUMBER, PRESETS, Preset, default_preset
+from rssnav.presets import PRESETS, Preset, default_preset, with_limits
 from rssnav.transmitters import NoTransmitterError, Sending, antenna_of, choose_transmitters
 
 Position = tuple[float, float, float]
@@ -78,12 +78,10 @@ def config_of(preset: Preset, options: dict[str, Any]) -> TraceConfig:
     """Return the limits of a preset with those options that are given."""
     found = {field: options.get(option) for field, option in _LIMITS.items()}
     given = {field: value for field, value in found.items() if value is not None}
-    transmissions = given.get("max_transmissions")
-    if transmissions == UNLIMITED:
-        given = {**BY_LOSS, **given, "max_transmissions": None}
-    elif transmissions is not None:
-        given = {**BY_NUMBER, **given, "max_transmissions": int(transmissions)}
-    return replace(preset.config, **given)
+    if "max_transmissions" in given:
+        most = given["max_transmissions"]
+        given["max_transmissions"] = None if most == UNLIMITED else int(most)
+    return with_limits(preset.config, given)
 
 
 _LIMITS = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
@@ -21,7 +21,7 @@ from rssnav.datasets.errors import DatasetError
 from rssnav.datasets.plans import FilePlans, GeneratedPlans, PlanSource
 from rssnav.datasets.split import SPLITS, Fractions, divided
 from rssnav.datasets.table import Table
-from rssnav.presets import BY_LOSS, BY_NUMBER, PRESETS
+from rssnav.presets import PRESETS, with_limits
 
 MAX_SPEC_BYTES = 1_000_000
 MAX_PLANS = 10_000_000
@@ -269,14 +269,12 @@ def _preset(table: Table, name: str) -> TraceConfig:
         raise table.error("base", f"one of {', '.join(PRESETS)}")
     given = {field: table.values[key] for key, field in _LIMITS.items() if key in table.values}
     if given.get("max_transmissions") == UNLIMITED:
-        given = {**BY_LOSS, **given, "max_transmissions": None}
-    elif "max_transmissions" in given:
-        given = {**BY_NUMBER, **given}
+        given["max_transmissions"] = None
     for field, value in given.items():
         if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
             key = next(key for key, of in _LIMITS.items() if of == field)
             raise table.error(key, "a number" + (f" or {UNLIMITED!r}" * (key == "transmissions")))
     try:
-        return replace(PRESETS[base].config, **given)  # pyright: ignore[reportArgumentType]
+        return with_limits(PRESETS[base].config, given)
     except ValueError as error:
         raise DatasetError(f"[{table.name}]: {error}", table.path) from error

@@ -9,7 +9,7 @@ from raytrace import Grid, TraceConfig, Transmitter
 from rssnav.explorer.antenna_choice import AntennaChoice
 from rssnav.explorer.transmitters import without_file
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
-from rssnav.presets import BY_LOSS, PRESETS, PresetName
+from rssnav.presets import PRESETS, PresetName, with_limits
 from rssnav.transmitters import FREQUENCY_HZ, POWER_DBM, SOURCE, Sending
 
 ANTENNA_OF_PRESET: dict[PresetName, str] = {"paper": "dipole", "building": "unpolarised"}
@@ -67,9 +67,7 @@ class MapSettings:
     def config(self, *, complete: bool) -> TraceConfig:
         """Return the limits of a trace, with or without diffraction."""
         config = TraceConfig(self.max_reflections, int(complete))
-        if self.max_transmissions is None:
-            return replace(config, max_transmissions=None, **BY_LOSS)
-        return replace(config, max_transmissions=self.max_transmissions)
+        return with_limits(config, {"max_transmissions": self.max_transmissions})
 
     def check_height(self, plan: FloorPlan) -> None:
         """Raise `PlanError` if the receivers are not between floor and ceiling."""
