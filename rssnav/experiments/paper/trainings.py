@@ -21,6 +21,9 @@ from rssnav.world import GridWorld
 EPISODE_LIMIT = 20_000
 """Episodes a run may take to converge; the paper does not state a limit."""
 
+STEP_LIMIT = 25_000_000
+"""Steps after which runs of other plans and choices stop; ours converge within 10 million."""
+
 
 @dataclass(frozen=True)
 class TrainingPlan:

@@ -6,6 +6,7 @@ that the walls leave.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,24 +15,25 @@ from raytrace import Grid
 from rssnav.experiments.paper.counting import SUPPORTED_COUNT
 from rssnav.experiments.paper.data import AGENTS, Configuration
 from rssnav.experiments.paper.scenarios import SPEEDS
-from rssnav.experiments.studies.readings.empty_floor import ONE, Arrivals
+from rssnav.experiments.studies.readings.empty_floor import ONE, Arrivals, Words, entries
+from rssnav.experiments.studies.readings.interpretations import STATED_GOAL
 from rssnav.experiments.studies.readings.lengths import StepCounts, supposed_counts
-from rssnav.missions.layout import Layout
+from rssnav.maps import CELL_SIZE_M, HEIGHT_M
+from rssnav.missions.layout import ACTIONS, Layout
 
 if TYPE_CHECKING:
     from floorplans import FloorPlan
 
-GOAL_M = 2.0
-FLYING_HEIGHT_M = 2.0
 UNKNOWN = Configuration(2, "rss", 2)
 """Its printed length, 121.65 m, is no flight's, so no flight of it is required."""
 
 
-def required_counts(scenario: int, speed: int) -> list[StepCounts]:
+@cache
+def required_counts(scenario: int, speed: int) -> tuple[StepCounts, ...]:
     """Counted steps of the flights that a plan must allow."""
     counts = supposed_counts()
     keys = [Configuration(scenario, agent, speed) for agent in AGENTS]
-    return [counts[key] for key in keys if key != UNKNOWN]
+    return tuple(counts[key] for key in keys if key != UNKNOWN)
 
 
 def fewest_wanted(scenario: int, speed: int) -> int:
@@ -84,19 +86,27 @@ def arrivals(plan: FloorPlan, speed: int, most_steps: int) -> Arrivals:
     Arrivals
         Without flights whose first step is left out.
     """
-    layout = Layout.of_plan(plan, Grid.over(plan.bounds, 1.0, FLYING_HEIGHT_M), speed)
+    layout = Layout.of_plan(plan, Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M), speed)
     start = layout.nearest(*plan.require_start())
-    goal = layout.distance_m(*plan.require_source()[:2]) < GOAL_M
-    steps = [(action, np.flatnonzero(layout.action_mask[:, action])) for action in range(8)]
+    goal = STATED_GOAL.contains(layout.distance_m(*plan.require_source()[:2]))
     words = np.zeros(layout.n_states, np.uint64)
     words[start] = ~goal[start]
-    straight, diagonal = [0], [0]
-    for _ in range(most_steps):
-        moved = np.zeros((2, words.size), np.uint64)
-        for action, cells in steps:  # the cells after a step differ from each other
-            moved[action % 2, layout.next_state[cells, action]] |= words[cells]
-        moved[1] <<= ONE
-        straight.append(int(np.bitwise_or.reduce(moved[0, goal], initial=0)))
-        diagonal.append(int(np.bitwise_or.reduce(moved[1, goal], initial=0)))
-        words = np.where(goal, np.uint64(0), moved[0] | moved[1])
+    straight, diagonal = entries(goal, words, most_steps, _Steps(layout))
     return Arrivals(straight, diagonal, [0] * len(straight))
+
+
+class _Steps:
+    """The steps of a layout, for words of its cells."""
+
+    def __init__(self, layout: Layout) -> None:
+        mask = layout.action_mask
+        self._cells = [np.flatnonzero(mask[:, action]) for action in range(len(ACTIONS))]
+        self._next = layout.next_state
+
+    def __call__(self, words: Words) -> tuple[Words, Words]:
+        """Words after one more step; the cells after one action differ from each other."""
+        straight, diagonal = np.zeros_like(words), np.zeros_like(words)
+        for action, cells in enumerate(self._cells):
+            target = diagonal if action % 2 else straight
+            target[self._next[cells, action]] |= words[cells]
+        return straight, diagonal << ONE

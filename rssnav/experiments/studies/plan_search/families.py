@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -42,12 +43,18 @@ def draw(scenario: int, rng: np.random.Generator) -> FloorPlan | None:
     walls = _FAMILIES[scenario](rng)
     if walls is None:
         return None
-    known = floorplans.load(f"scenario{scenario}")
-    outside = tuple(wall for wall in known.walls if wall.material == "concrete")
+    shell = _shell(scenario)
     try:
-        return replace(known, walls=(*outside, *walls))
+        return replace(shell, walls=(*shell.walls, *walls))
     except PlanError:
         return None
+
+
+@cache
+def _shell(scenario: int) -> FloorPlan:
+    """Return the outer walls with all that the paper states."""
+    known = floorplans.load(f"scenario{scenario}")
+    return replace(known, walls=tuple(w for w in known.walls if w.material == "concrete"))
 
 
 def _scenario_1(rng: np.random.Generator) -> list[Wall] | None:

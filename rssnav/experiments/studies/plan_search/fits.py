@@ -14,7 +14,7 @@ from rssnav.experiments.paper.counting import SUPPORTED_COUNT, counted_lengths_m
 from rssnav.experiments.paper.data import AGENTS, Configuration, flights
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
 from rssnav.experiments.paper.scenarios import SPEEDS
-from rssnav.experiments.paper.trainings import EPISODE_LIMIT
+from rssnav.experiments.paper.trainings import EPISODE_LIMIT, STEP_LIMIT
 from rssnav.experiments.studies.plan_search.constraints import allows_printed_flights
 from rssnav.experiments.studies.plan_search.families import draw
 from rssnav.experiments.studies.study import Conditions
@@ -27,8 +27,6 @@ BLOCK = 250
 
 BUILT_IN = -1
 """Block of the built-in plan, which the drawn ones are compared with."""
-
-STEP_LIMIT = 25_000_000
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ of 64 diagonal steps and more drop out of the words; the printed lengths have at
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -140,20 +141,37 @@ def arrivals(receivers: Lattice, most_steps: int) -> Arrivals:
     """
     start = np.zeros(receivers.goal.shape, np.uint64)
     start[receivers.start] = ~receivers.goal[receivers.start]
-    straight, diagonal = _entries(receivers.goal, start, most_steps + 1)
+    straight, diagonal = entries(receivers.goal, start, most_steps + 1, _moved)
     first = np.bitwise_or(*_moved(start))
     second = np.where(receivers.goal, np.uint64(0), (first > 0).astype(np.uint64))
-    later = _entries(receivers.goal, second, most_steps)
+    later = entries(receivers.goal, second, most_steps, _moved)
     without_first = [s | d for s, d in zip(*later, strict=True)]
     without_first[0] |= (straight[1] | diagonal[1]) > 0
     return Arrivals(straight, diagonal, without_first)
 
 
-def _entries(goal: NDArray[np.bool_], words: Words, n_steps: int) -> tuple[list[int], list[int]]:
-    """Bits of the flights that enter the goal by a straight and by a diagonal n-th step."""
+def entries(
+    goal: NDArray[np.bool_],
+    words: Words,
+    n_steps: int,
+    moved_by: Callable[[Words], tuple[Words, Words]],
+) -> tuple[list[int], list[int]]:
+    """Bits of the flights that enter the goal by a straight and by a diagonal n-th step.
+
+    Parameters
+    ----------
+    goal : ndarray of bool
+        Where a flight ends.
+    words : ndarray of uint64, of the same shape
+        Flights before the first step.
+    n_steps : int
+        Most steps.
+    moved_by : callable
+        Returns the words after one more step, by straight and by diagonal steps.
+    """
     straight, diagonal = [0], [0]
     for _ in range(n_steps):
-        moved = _moved(words)
+        moved = moved_by(words)
         straight.append(int(np.bitwise_or.reduce(moved[0][goal], initial=0)))
         diagonal.append(int(np.bitwise_or.reduce(moved[1][goal], initial=0)))
         words = np.where(goal, np.uint64(0), np.bitwise_or(*moved))

@@ -10,14 +10,11 @@ from numpy.typing import NDArray
 
 from rssnav.experiments.paper.counting import SUPPORTED_COUNT, counted_lengths_m
 from rssnav.experiments.paper.data import AGENTS, CONFIGURATIONS, SHOWN_EPISODES, Configuration
-from rssnav.experiments.paper.trainings import EPISODE_LIMIT
+from rssnav.experiments.paper.trainings import EPISODE_LIMIT, STEP_LIMIT
 from rssnav.experiments.studies.study import Conditions
 from rssnav.learning_parameters import QLearning
 from rssnav.results import TrainingResult
 from rssnav.world import GridWorld, WorldError
-
-STEP_LIMIT = 25_000_000
-"""Steps after which a run stops; our interpretation converges within 10 million."""
 
 
 @dataclass(frozen=True)
