@@ -169,7 +169,7 @@ def _from(n_transmitters: int) -> str:
 
 def _roughly(cost: CostEstimate, memory: str) -> str:
     """Return time and memory in words, and how far they may be off."""
-    words = f"{_duration(cost.seconds)} and {memory} of memory"
+    words = f"{duration(cost.seconds)} and {memory} of memory"
     if not cost.is_extrapolated:
         return f"about {words}"
     return f"on the order of {words} (extrapolated from fewer reflections: may be far off)"
@@ -195,7 +195,8 @@ def _affordable(cost: CostEstimate, grid: Grid) -> str:
     return f"; a minute or less with {' or '.join(options)}" if options else ""
 
 
-def _duration(seconds: float) -> str:
+def duration(seconds: float) -> str:
+    """Return a time [s] in words, in the largest unit of which it has two."""
     for unit, length in UNITS_S.items():
         if seconds >= 2.0 * length:
             return f"{seconds / length:.0f} {unit}"

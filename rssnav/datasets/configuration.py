@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -88,10 +89,7 @@ class Configuration:
     def maps_a_transmitter(self) -> int:
         """Number of maps of each transmitter."""
         kinds = (self.frequencies_hz, self.antennas, self.heights_m, self.presets)
-        n = 1
-        for kind in kinds:
-            n *= len(kind)
-        return n
+        return math.prod(map(len, kinds))
 
     @property
     def key(self) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 
 from floorplans import PlanError
 from raytrace import Grid, SceneError, Transmitter, estimate_cost
+from rssnav.cost_notice import duration
 from rssnav.datasets.configuration import Configuration
 from rssnav.datasets.errors import DatasetError
 from rssnav.datasets.plans import PLANS_A_FOLDER, PlanSource
@@ -60,7 +61,7 @@ class DatasetCost:
         about = "on the order of " if self.is_rough else "about "
         return (
             f"estimate: {self.n_maps} maps of {self.n_plans} plans, {about}"
-            f"{self.core_s / 3600:.2g} core-hours ({_duration(self.core_s / workers)} with "
+            f"{self.core_s / 3600:.2g} core-hours ({duration(self.core_s / workers)} with "
             f"{workers} at once), {_size(self.n_bytes)} and {self.n_inodes} files"
         )
 
@@ -136,10 +137,3 @@ def _size(n_bytes: float) -> str:
         if n_bytes >= size:
             return f"{n_bytes / size:.3g} {unit}"
     return f"{n_bytes / 1e3:.0f} kB"
-
-
-def _duration(seconds: float) -> str:
-    for unit, length in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
-        if seconds >= 2.0 * length:
-            return f"{seconds / length:.0f} {unit}"
-    return f"{seconds:.0f} seconds"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,7 +22,7 @@ PLANS_A_FOLDER = 1000
 
 
 @dataclass(frozen=True)
-class PlanSource:
+class PlanSource(ABC):
     """Where a plan comes from; small enough to be sent to any worker.
 
     Attributes
@@ -47,13 +48,13 @@ class PlanSource:
         return f"{self.split}/{self.number // PLANS_A_FOLDER:03d}/{self.name}.h5"
 
     @property
+    @abstractmethod
     def described(self) -> dict[str, object]:
         """What the plan depends on."""
-        raise NotImplementedError
 
+    @abstractmethod
     def plan(self) -> FloorPlan:
         """Return the plan."""
-        raise NotImplementedError
 
     def key(self, configuration_key: str) -> str:
         """Hash of all that its maps depend on."""

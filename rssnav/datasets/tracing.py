@@ -68,11 +68,12 @@ def trace_plan(plan: FloorPlan, configuration: Configuration, limits: Limits) ->
     ]
     inside = np.stack([cells_inside(plan, grid) for grid in grids])
     scene = scene_of(plan, configuration.edition)
+    ends = _Ends.of(configuration, placed)
     maps = _empty(configuration, placed, grids[0], inside)
     seconds = dict[MapIndex, float]()
     for index in maps.indices():
         started = time.perf_counter()
-        request = _Request.of(configuration, placed, grids, index)
+        request = _Request.of(configuration, ends, grids, index)
         _fill(maps, index, request, scene, inside[index.height], limits)
         seconds[index] = time.perf_counter() - started
         if limits.traced is not None:
@@ -103,6 +104,37 @@ def _default(plan: FloorPlan) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
+class _Ends:
+    """Where maps are sent from, and the antennas of all; each is made once a plan.
+
+    Attributes
+    ----------
+    placed
+        The transmitters.
+    transmit
+        Antennas of each transmitter, for each antenna of the configuration.
+    receive
+        Of the receivers.
+    """
+
+    placed: tuple[PlanTransmitter, ...]
+    transmit: tuple[tuple[Antenna, ...], ...]
+    receive: Antenna
+
+    @classmethod
+    def of(cls, configuration: Configuration, placed: tuple[PlanTransmitter, ...]) -> _Ends:
+        """Make the antennas."""
+        return cls(
+            placed,
+            tuple(
+                tuple(antenna.antenna(at.direction) for at in placed)
+                for antenna in configuration.antennas
+            ),
+            configuration.receive_antenna.antenna(),
+        )
+
+
+@dataclass(frozen=True)
 class _Request:
     """What a single map is traced with."""
 
@@ -115,21 +147,20 @@ class _Request:
     def of(
         cls,
         configuration: Configuration,
-        placed: tuple[PlanTransmitter, ...],
+        ends: _Ends,
         grids: list[Grid],
         index: MapIndex,
     ) -> _Request:
-        at = placed[index.transmitter]
         return cls(
             Transmitter(
-                at.position,
+                ends.placed[index.transmitter].position,
                 configuration.power_dbm,
                 configuration.frequencies_hz[index.frequency],
-                configuration.antennas[index.antenna].antenna(at.direction),
+                ends.transmit[index.antenna][index.transmitter],
             ),
             grids[index.height],
             tuple(configuration.presets.values())[index.preset],
-            configuration.receive_antenna.antenna(),
+            ends.receive,
         )
 
 

@@ -59,6 +59,13 @@ class Summary:
     failure: str = ""
     is_final: bool = True
 
+    @classmethod
+    def of_failure(
+        cls, source: PlanSource, key: str, error: BaseException, *, is_final: bool
+    ) -> Summary:
+        """Return the summary of a plan whose maps an error has prevented."""
+        return cls(source.name, key, failure=f"{type(error).__name__}: {error}", is_final=is_final)
+
     def to_json(self) -> str:
         """Return it as a line of JSON."""
         return json.dumps(asdict(self), separators=(",", ":"))
@@ -96,7 +103,7 @@ def make_plan(
         plan = source.plan()
         maps = trace_plan(plan, configuration, limits)
     except (PlanError, SceneError, ValueError) as error:
-        return Summary(source.name, key, failure=f"{type(error).__name__}: {error}")
+        return Summary.of_failure(source, key, error, is_final=True)
     about = About(
         name=source.name,
         split=source.split,

@@ -161,7 +161,7 @@ def on_worker(
     except (DatasetError, OSError):
         raise
     except Exception as error:  # such as one that cannot be sent
-        return Summary(source.name, key, failure=f"{type(error).__name__}: {error}", is_final=False)
+        return Summary.of_failure(source, key, error, is_final=False)
 
 
 def _put(done: SimpleQueue[str], key: str, _future: Any) -> None:

@@ -39,9 +39,8 @@ class Job:
 
     def failed(self, source: PlanSource, error: BaseException) -> Summary:
         """Return the summary of a plan whose work was lost; a further run tries it again."""
-        reason = f"{type(error).__name__}: {error}"
         key = source.key(self.configuration.key)
-        return Summary(source.name, key, failure=reason, is_final=False)
+        return Summary.of_failure(source, key, error, is_final=False)
 
 
 class Engine(Protocol):
