@@ -5,12 +5,14 @@ from functools import cache
 
 import pytest
 from hypothesis import settings
+from own_interrupts import accept_interrupts
 
 import floorplans
 from raytrace import Grid, RadioMap, Scene, Transmitter, compute_radio_map
 
 settings.register_profile("rssnav", deadline=None, derandomize=True, print_blob=False)
 settings.load_profile("rssnav")
+accept_interrupts()
 
 
 @pytest.hookimpl(wrapper=True)

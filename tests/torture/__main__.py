@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from own_interrupts import accept_interrupts
+
 from raytrace.threads import n_threads
 from torture import caches
 from torture.attacks import Attacked, fill_the_disk, kill_at_random, write_twice
@@ -23,6 +25,7 @@ ATTACKS: dict[str, Attack] = {
 
 def main() -> int:
     """Run the attacks, print faults and counts; return 1 if there is a fault."""
+    accept_interrupts()
     arguments = _arguments()
     names = arguments.job or list(FAST if arguments.fast else JOBS)
     counts, kills = dict.fromkeys((*ATTACKS, "caches"), 0), dict.fromkeys(names, 0)
