@@ -6,7 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import pytest
@@ -97,6 +97,14 @@ class Tab:
     def marks(self) -> list[float]:
         """The x of source and start [m]."""
         return self.columns("Scatter")[-1]
+
+    def wait_for_marks(self, holds: Callable[[float, float], bool]) -> None:
+        """Wait until something holds for the x of source and start; the server may move them."""
+        for _ in range(PATIENCE_MS // 100):
+            if holds(*self.marks()):
+                return
+            self.page.wait_for_timeout(100)
+        raise AssertionError(f"source and start stay at x = {self.marks()}")
 
     def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
         (x, y), (to_x, to_y) = self.place(*start), self.place(*end)

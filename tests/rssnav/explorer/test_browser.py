@@ -51,13 +51,11 @@ def test_drag_source_and_start(tab) -> None:
     start_x = tab.marks()[1]
     tab.drag(SOURCE, (2.5, 2.5))
     tab.wait_for_map()
-    assert tab.marks() == [pytest.approx(2.5, abs=0.1), start_x]
+    tab.wait_for_marks(lambda source, start: abs(source - 2.5) <= 0.1 and start == start_x)
     tab.drag((start_x, 1.5), (9.4, 7.7))
-    tab.page.wait_for_timeout(500)
-    assert tab.marks()[1] == 9.5  # the cell's centre
+    tab.wait_for_marks(lambda source, start: start == 9.5)  # the cell's centre
     tab.drag((9.5, 7.5), (30.0, 7.5))
-    tab.page.wait_for_timeout(500)
-    assert tab.marks()[1] <= 11.5  # on the floor, however far the dot was dragged
+    tab.wait_for_marks(lambda source, start: start == 11.5)  # on the floor, however far it went
     tab.drag((2.5, 2.5), SOURCE)
     tab.wait_for_map()
 
@@ -65,7 +63,7 @@ def test_drag_source_and_start(tab) -> None:
 def test_click_a_cell_for_its_paths(tab, tmp_path) -> None:
     tab.page.mouse.click(*tab.place(9.5, 6.5))
     tab.page.get_by_text("(9.5, 6.5, 2) m").wait_for()
-    assert tab.page.get_by_role("row").count() == 13
+    expect(tab.page.get_by_role("row")).to_have_count(13)
     space, plan = (tab.page.get_by_role("button", name=name, exact=True) for name in ("3D", "2D"))
     space.click()
     frame = tab.page.frame_locator("iframe[title='3D']")
@@ -150,8 +148,8 @@ def test_second_tab_on_a_phone_is_on_its_own(tab, browser, address, tmp_path) ->
     phone.choose("Training")
     width = phone.page.evaluate("document.documentElement.scrollWidth")
     phone.page.screenshot(path=tmp_path / "phone-training.png", full_page=True)
-    assert phone.marks()[0] == pytest.approx(8.5, abs=0.1)
-    assert tab.marks()[0] == pytest.approx(SOURCE[0], abs=0.1)
+    phone.wait_for_marks(lambda source, start: abs(source - 8.5) <= 0.1)
+    tab.wait_for_marks(lambda source, start: abs(source - SOURCE[0]) <= 0.1)
     phone.context.close()
     assert width <= PHONE["width"]
 
