@@ -86,13 +86,26 @@ def arrivals(plan: FloorPlan, speed: int, most_steps: int) -> Arrivals:
     Arrivals
         Without flights whose first step is left out.
     """
-    layout = Layout.of_plan(plan, Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M), speed)
+    layout = Layout.of_plan(plan, _lattice(plan, speed))
     start = layout.nearest(*plan.require_start())
     goal = STATED_GOAL.contains(layout.distance_m(*plan.require_source()[:2]))
     words = np.zeros(layout.n_states, np.uint64)
     words[start] = ~goal[start]
     straight, diagonal = entries(goal, words, most_steps, _Steps(layout))
     return Arrivals(straight, diagonal, [0] * len(straight))
+
+
+def _lattice(plan: FloorPlan, speed: int) -> Grid:
+    """Grid of the cells that can be reached at a speed; one step moves by one of them."""
+    x_min, y_min, x_max, y_max = plan.bounds
+    step_m = speed * CELL_SIZE_M
+    x, y = (
+        np.arange(least + (start - least) % step_m, most, step_m)
+        for start, least, most in zip(
+            plan.require_start(), (x_min, y_min), (x_max, y_max), strict=True
+        )
+    )
+    return Grid(x, y, HEIGHT_M, step_m)
 
 
 class _Steps:

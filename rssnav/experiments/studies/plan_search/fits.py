@@ -25,6 +25,9 @@ from rssnav.world import GridWorld
 BLOCK = 250
 """Plans that one piece of the search draws."""
 
+CLOSE = 0.05
+"""A length within this fraction of the printed one counts as met."""
+
 BUILT_IN = -1
 """Block of the built-in plan, which the drawn ones are compared with."""
 
@@ -74,6 +77,15 @@ class Fit:
         found = [abs(value) for key, value in self.deviation.items() if accept(key)]
         return max(np.inf if np.isnan(value) else value for value in found)
 
+    @property
+    def score(self) -> int:
+        """Number of the paper's statements that are met: six lengths and six claims."""
+        return self.lengths() + self.claims()
+
+    def lengths(self) -> int:
+        """Return how many of the six lengths are within :data:`CLOSE` of the printed ones."""
+        return sum(abs(value) <= CLOSE for value in self.deviation.values())
+
     def claims(self) -> int:
         """Return at how many speeds the RSS agent flies farther, and with more turns."""
         at = [
@@ -113,7 +125,13 @@ def _plans(piece: Piece, seed: int) -> Iterator[tuple[int, FloorPlan]]:
 
 
 def _fit(piece: Piece, number: int, plan: FloorPlan, conditions: Conditions) -> Fit:
-    radio_map = make_map(plan, threads=conditions.store.threads)
+    store = conditions.store
+    radio_map = make_map(
+        plan,
+        store.folder / store.file_name(f"{piece.label} {number} scenario {piece.scenario} map"),
+        threads=store.threads,
+        force=not store.resume,
+    )
     trained: dict[Configuration, TrainingResult] = {}
     for speed in SPEEDS:
         world = GridWorld.from_map(plan, radio_map, speed)
