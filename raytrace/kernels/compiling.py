@@ -1,7 +1,7 @@
 """How the kernels are compiled."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -50,10 +50,36 @@ def jit(
             no_cfunc_wrapper=True,
             _nrt=allocates and not inner,
         )(function)
+        widen_integers(dispatcher)
         keep_compiled(dispatcher, _SOURCES)
         return dispatcher
 
     return compiled
+
+
+def widen_integers(dispatcher: Any) -> None:
+    """Compile a function once for all whole numbers that kernels call it with.
+
+    By itself numba compiles it anew for 32-bit numbers and for each constant.
+    """
+    template_of = dispatcher.get_call_template
+
+    def get_call_template(args: Sequence[types.Type], kws: Mapping[str, types.Type]) -> Any:
+        return template_of(
+            [_widened(kind) for kind in args], {name: _widened(kws[name]) for name in kws}
+        )
+
+    dispatcher.get_call_template = get_call_template
+
+
+def _widened(kind: types.Type) -> types.Type:
+    """Return the type that a kernel is compiled for in place of another."""
+    kind = types.unliteral(kind)
+    if isinstance(kind, types.Integer):
+        return types.int64
+    if isinstance(kind, types.Tuple | types.UniTuple):
+        return types.Tuple([_widened(part) for part in kind.types])
+    return kind
 
 
 def chosen_by_type(field: str, absent: Function, present: Function) -> Callable[[Function], None]:

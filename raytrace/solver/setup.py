@@ -118,7 +118,7 @@ def prepare(
     view, guard = scene.view, guard or no_guard()
     x, y, z = (float(coordinate) for coordinate in position)
     root = _cells_of_transmitter(scene, (x, y, z))
-    geometry = _geometry(scene, (x, y, z), receivers, config)
+    geometry = trace_geometry(scene, (x, y, z), receivers, config)
     band = [z, *np.unique(receivers[:, 2]), *(e.z for e in scene.horizontal_edges)]
     bounces = bounces_needed(view, min(band), max(band), config.max_transmissions != 0)
     limits = limits or limits_by_number(scene, config)
@@ -173,7 +173,7 @@ def with_receivers(tracing: Tracing, receivers: Floats) -> Tracing:
     Their paths are limited by the beams alone.
     """
     x, y, z = (float(coordinate) for coordinate in tracing.geometry.transmitter)
-    geometry = _geometry(tracing.scene, (x, y, z), receivers, tracing.config)
+    geometry = trace_geometry(tracing.scene, (x, y, z), receivers, tracing.config)
     return replace(
         tracing,
         geometry=geometry,
@@ -209,7 +209,7 @@ def _beams(
     return tree, left_out, corners, partial_walls, intervals
 
 
-def _geometry(
+def trace_geometry(
     scene: Scene, position: tuple[float, float, float], receivers: Floats, config: TraceConfig
 ) -> TraceGeometry:
     """Return a scene, its transmitter and receivers as the kernels take them."""

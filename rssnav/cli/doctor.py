@@ -19,6 +19,7 @@ from rssnav import GridWorld, LocationAgent, RssAgent, ToleranceStates, train
 from rssnav.cli.console import print_json, print_pairs, stage_progress
 from rssnav.cli.failures import EXIT_FAILURE, print_error
 from rssnav.cli.options import Json, examples
+from rssnav.first_use import compile_kernels
 from rssnav.kernel_cache import CacheState, learning_cache, tracer_cache
 from rssnav.maps import make_map
 from rssnav.presets import PRESETS
@@ -50,6 +51,7 @@ def add_to(parent: typer.Typer) -> None:
 def examine(as_json: Json = False) -> None:
     """Print versions, threads and the state of the compiled kernels, and run a self-test."""
     with stage_progress(), watched_compilation() as compilation:
+        compile_kernels("paper")
         _load_kernels()
         started_s = time.perf_counter()
         faults = [*_tracer_faults(), *_learning_faults()]

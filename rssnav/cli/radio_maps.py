@@ -42,7 +42,9 @@ from rssnav.cli.options import (
     in_bytes,
 )
 from rssnav.cli.radio import Radio, radio_of
+from rssnav.first_use import compile_kernels
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M, cells_inside, make_map
+from rssnav.presets import default_preset
 from rssnav.transmitter_maps import make_transmitter_maps
 
 
@@ -110,6 +112,7 @@ def map_plan(
     }  # fmt: skip
     radio = radio_of(plan, loaded, source, options)
     with stage_progress() as show:
+        compile_kernels(preset or default_preset(plan), threads=threads)
         maps = _traced(
             loaded,
             output,
@@ -181,6 +184,7 @@ def map_scenarios(
     from rssnav.experiments.paper.scenarios import PLANS
 
     with stage_progress() as show:
+        compile_kernels("paper", threads=threads)
         for name in PLANS:
             plan, file, picture = floorplans.load(name), out / f"{name}.h5", out / f"{name}.png"
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import floorplans
 from rssnav.experiments.progress import Notice, StageProgress
+from rssnav.first_use import compile_kernels
 from rssnav.maps import make_map
 from rssnav.world import GridWorld
 
@@ -84,6 +85,7 @@ def load_scenarios(
         Where tracing needs more memory than it may take.
     """
     loaded = [floorplans.load(plan) for plan in plans]
+    compile_kernels("paper", threads=threads)
     scenarios: dict[int, Scenario] = {}
     for number, plan in enumerate(loaded, start=1):
         map_progress = _MapProgress(progress, f"map of {plan.name}")
