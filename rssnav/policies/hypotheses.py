@@ -1,0 +1,163 @@
+"""Where the transmitter may be, and the radio map that each place would have."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+
+from floorplans import FloorPlan
+from raytrace import Antenna, Isotropic, TraceConfig, Transmitter
+from rssnav.discrete_states import heard
+from rssnav.missions.layout import Layout
+from rssnav.missions.mission import Mission
+from rssnav.missions.task import Task
+from rssnav.progress import Progress
+from rssnav.transmitter_maps import make_transmitter_maps
+
+COARSE = TraceConfig(max_reflections=2, max_diffractions=0, max_transmissions=8)
+"""Limits of the maps of hypotheses: a tenth of the time of the preset `building`, and errors of
+some dB in the shadow."""
+
+NO_WAY = 1_000_000
+"""Steps to where no step leads."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hypotheses:
+    """H places of the transmitter, each with the map that it would have.
+
+    Attributes
+    ----------
+    layout : Layout
+        Plan with S cells, all steps known.
+    rss_dbm : (S, H) float64
+        RSS of each cell under each hypothesis [dBm].
+    found : (S, H) bool
+        Where the transmitter would be found.
+    position : (H, 2) float64
+        Places [m].
+    transition : (H, H) float64 or None
+        Probability of another place after a second; None for a transmitter that stays.
+    hops : (S, H) int32
+        Fewest steps from each cell to where it would be found.
+    """
+
+    layout: Layout
+    rss_dbm: NDArray[np.float64]
+    found: NDArray[np.bool_]
+    position: NDArray[np.float64]
+    transition: NDArray[np.float64] | None = None
+    hops: NDArray[np.int32] = field(init=False)
+
+    def __post_init__(self) -> None:
+        shape = (self.layout.n_states, self.position.shape[0])
+        for name in ("rss_dbm", "found"):
+            if getattr(self, name).shape != shape:
+                raise ValueError(f"{name}: shape {getattr(self, name).shape}, expected {shape}")
+        object.__setattr__(self, "hops", _hops(self.layout, self.found))
+
+    @classmethod
+    def of_mission(cls, mission: Mission, task: Task) -> Hypotheses:
+        """Return the modes of a mission: the true places and maps, and how places change.
+
+        Raises
+        ------
+        ValueError
+            For a mission with doors, whose steps change.
+        """
+        if len(mission.layouts) > 1:
+            raise ValueError(f"mission {mission.name!r}: hypotheses need steps that do not change")
+        return cls(
+            layout=mission.layout,
+            rss_dbm=np.ascontiguousarray(mission.rss_dbm.T),
+            found=np.ascontiguousarray(task.goal.cells(mission).T),
+            position=mission.source,
+            transition=mission.modes.transition if mission.modes.changes else None,
+        )
+
+    @classmethod
+    def of_plan(
+        cls,
+        plan: FloorPlan,
+        layout: Layout,
+        *,
+        level_dbm: float = -21.0,
+        height_m: float = 1.2,
+        config: TraceConfig = COARSE,
+        antenna: Antenna | None = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> Hypotheses:
+        """Trace the map of a transmitter in some cells, one step from every other.
+
+        Parameters
+        ----------
+        plan : FloorPlan
+            Walls and materials.
+        layout : Layout
+            Its cells, as of `Layout.of_plan` with cells of 1 m.
+        level_dbm : float
+            RSS above which the transmitter is found [dBm]. Where no cell has as much, it would be
+            found in the cell of the highest.
+        height_m : float
+            Of the transmitter [m].
+        config : TraceConfig
+            Limits of the traces.
+        antenna : Antenna, optional
+            At both ends; by default of unknown orientation.
+        threads, progress
+            As for `rssnav.maps.make_map`.
+        """
+        position = layout.position[_dominating(layout)] + _BESIDE_M
+        antenna = antenna or Isotropic(polarisation="mean")
+        senders = {
+            f"{k}": Transmitter(position=(x, y, height_m), antenna=antenna)
+            for k, (x, y) in enumerate(position.tolist())
+        }
+        maps = make_transmitter_maps(
+            plan,
+            senders,
+            config=config,
+            receive_antenna=antenna,
+            threads=threads,
+            progress=progress,
+        )
+        rss_dbm = np.column_stack([layout.on_cells(maps[name].rss_dbm) for name in senders])
+        found = (rss_dbm > level_dbm) | (rss_dbm == rss_dbm.max(axis=0))
+        return cls(layout, rss_dbm, found, position)
+
+
+_BESIDE_M = (0.1373, 0.0619)  # off the centre, where a receiver is, and off walls at round numbers
+
+
+def _dominating(layout: Layout) -> NDArray[np.int64]:
+    """Cells of which none is a step from another, but all other cells are from one."""
+    free = np.ones(layout.n_states, dtype=np.bool_)
+    chosen: list[int] = []
+    for cell in range(layout.n_states):
+        if free[cell]:
+            chosen.append(cell)
+            free[layout.next_state[cell, layout.action_mask[cell]]] = False
+    return np.array(chosen, dtype=np.int64)
+
+
+def _hops(layout: Layout, found: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Fewest steps from each cell to the cells of each hypothesis, shape (S, H)."""
+    size = layout.n_states
+    state, action = np.nonzero(layout.action_mask)
+    arrived = layout.next_state[state, action]
+    back = coo_array((np.ones(state.size), (arrived, state)), shape=(size, size)).tocsr()
+    hops = np.empty(found.shape, dtype=np.int32)
+    for h in range(found.shape[1]):
+        steps = dijkstra(back, indices=np.flatnonzero(found[:, h]), unweighted=True, min_only=True)
+        hops[:, h] = np.where(np.isfinite(steps), steps, NO_WAY)
+    return hops
+
+
+def heard_by(hypotheses: Hypotheses, sensitivity_dbm: float) -> NDArray[np.float64]:
+    """Readings (S, H) that the maps would give a receiver of some sensitivity [dBm]."""
+    return heard(hypotheses.rss_dbm, sensitivity_dbm)
