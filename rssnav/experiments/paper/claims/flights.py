@@ -81,7 +81,10 @@ def _avoids_low_rss(data: PaperData) -> Iterator[Case]:
             if learned.size == 0:
                 yield undecided(name)
                 continue
-            compared = (("RSS-based", float(learned.mean())), ("shortest flights", reference))
+            compared = [("RSS-based", float(learned.mean())), ("shortest flights", reference)]
+            unaware = data.result(scenario, "location", SHOWN_SPEED)
+            if others := flights(unaware):
+                compared.append(("location-based", float(statistic(unaware.world, others).mean())))
             yield case(name, compared, mean(learned - reference))
 
 

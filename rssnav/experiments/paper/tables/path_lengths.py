@@ -18,27 +18,28 @@ from rssnav.results import TrainingResult
 def table(data: PaperData) -> Table:
     """Make a row per configuration."""
     other = _other(data.count)
+    name = other.capitalize()
     return Table(
         "path_lengths",
         "Length of the final trajectories (the paper's Table IV)",
         "Greedy flights after training, over the realisations whose flight arrives; the others "
-        f"end in a cycle. Lengths count the steps so: {data.count}; the other lengths: {other}. "
-        "Shortest and fewest possible: Dijkstra over the possible steps. Straight "
+        f"end in a cycle. Their lengths have {_in_words(data.count)}; the mean is also given with "
+        f"{_in_words(other)}. Shortest and fewest: Dijkstra over the possible steps. Straight "
         "and diagonal steps cost the agents the same, so they minimise steps rather than metres.",
         (
             *CONFIGURATION_COLUMNS,
-            Column("arrived", "Flights that arrive"),
+            Column("arrived", "Arrive"),
             Column("mean_m", "Mean [m]", 2),
-            Column("sd_m", "± sd [m]", 2),
-            Column("median_m", "Median [m]", 2),
+            Column("sd_m", "± sd", 2),
+            Column("median_m", "Median [m]", 2, shown=False),
             Column("paper_m", "Paper [m]", 2),
             Column("ratio_to_paper", "Mean / paper", 3),
-            Column("other_mean_m", "Other mean [m]", 2),
-            Column("other_ratio_to_paper", "Other mean / paper", 3),
-            Column("shortest_m", "Shortest possible [m]", 2),
-            Column("mean_steps", "Mean [steps]", 1),
-            Column("sd_steps", "± sd [steps]", 1),
-            Column("fewest_steps", "Fewest possible [steps]"),
+            Column("other_mean_m", f"{name} [m]", 2),
+            Column("other_ratio_to_paper", f"{name} / paper", 3),
+            Column("shortest_m", "Shortest [m]", 2),
+            Column("mean_steps", "Steps", 1),
+            Column("sd_steps", "± sd", 1),
+            Column("fewest_steps", "Fewest"),
         ),
         tuple(_row(data, key, result) for key, result in data.results.items()),
     )
@@ -61,6 +62,10 @@ def _row(data: PaperData, key: Configuration, result: TrainingResult) -> tuple[C
 def _other(count: Count) -> Count:
     """Return the count that lengths are shown under beside the chosen one."""
     return next(each for each in COMPARED_COUNTS if each is not count)
+
+
+def _in_words(count: Count) -> str:
+    return "all steps counted" if count is Count.ALL else f"the {count}"
 
 
 def _lengths(count: Count, result: TrainingResult, paper_m: float | None) -> tuple[Cell, ...]:

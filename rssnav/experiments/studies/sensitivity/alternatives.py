@@ -8,11 +8,20 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rssnav.experiments.paper.claims.flights import turns
 from rssnav.experiments.paper.counting import SUPPORTED_COUNT, counted_lengths_m
-from rssnav.experiments.paper.data import AGENTS, CONFIGURATIONS, SHOWN_EPISODES, Configuration
+from rssnav.experiments.paper.data import (
+    AGENTS,
+    CONFIGURATIONS,
+    SHOWN_EPISODES,
+    Configuration,
+    flights,
+    terminal_states,
+)
 from rssnav.experiments.paper.trainings import EPISODE_LIMIT, STEP_LIMIT
 from rssnav.experiments.studies.study import Conditions
 from rssnav.learning_parameters import QLearning
+from rssnav.optimal_flights import shortest_path
 from rssnav.results import TrainingResult
 from rssnav.world import GridWorld, WorldError
 
@@ -64,7 +73,16 @@ ALTERNATIVES: tuple[Alternative, ...] = (
     Alternative("decay", "per episode, η 1e-3", QLearning(decay="episode", eta=1e-3)),
     Alternative("tie-break", "random", QLearning(tie_break="random")),
     Alternative("goal reward", "instead", QLearning(goal_reward_is="instead")),
-    Alternative("training", f"{SHOWN_EPISODES} episodes", episodes=SHOWN_EPISODES),
+    *(
+        Alternative(
+            "training", f"{SHOWN_EPISODES} episodes{change}", learning, False, SHOWN_EPISODES
+        )
+        for change, learning in (
+            ("", QLearning()),
+            (", decay per episode, η 1e-3", QLearning(decay="episode", eta=1e-3)),
+            (", α 0.5", QLearning(alpha_min=0.5)),
+        )
+    ),
 )
 
 
@@ -103,6 +121,10 @@ class Outcome:
     counted_m : (A,) float64 or None
         Length [m] with :data:`~rssnav.experiments.paper.counting.SUPPORTED_COUNT`; None where the
         flights themselves were not stored.
+    turns : (A,) float64 or None
+        Changes of heading of the A flights; None where the flights were not stored.
+    fewest_steps : int
+        Of any flight; 0 where none was looked for.
     obstacle : str
         Why it could not be trained; empty if it could.
     """
@@ -115,6 +137,8 @@ class Outcome:
     length_m: NDArray[np.float64]
     path_steps: NDArray[np.float64]
     counted_m: NDArray[np.float64] | None = None
+    turns: NDArray[np.float64] | None = None
+    fewest_steps: int = 0
     obstacle: str = ""
 
 
@@ -140,7 +164,7 @@ def measure(trial: Trial, conditions: Conditions) -> list[Outcome]:
     except WorldError as error:
         none = np.empty(0)
         return [
-            Outcome(alternative, key, conditions.runs, none, none, none, none, none, str(error))
+            Outcome(alternative, key, conditions.runs, none, none, none, none, obstacle=str(error))
         ]
     outcome = _greedy(alternative, key, result)
     return [outcome, _flown(outcome, result)] if alternative == OURS else [outcome]
@@ -168,6 +192,8 @@ def _greedy(alternative: Alternative, key: Configuration, result: TrainingResult
         result.path_length_m[result.reached],
         result.path_steps[result.reached].astype(np.float64),
         counted_lengths_m(result, SUPPORTED_COUNT),
+        np.array([turns(result.world, flight) for flight in flights(result)]),
+        shortest_path(result.world, terminal_states(result), "steps").steps,
     )
 
 
@@ -181,4 +207,5 @@ def _flown(outcome: Outcome, result: TrainingResult) -> Outcome:
         length_m=result.episode_length_m[runs, last],
         path_steps=result.steps[runs, last].astype(np.float64),
         counted_m=None,
+        turns=None,
     )

@@ -19,6 +19,7 @@ from rssnav.experiments.studies.sensitivity.alternatives import (
     measure,
     trials,
 )
+from rssnav.experiments.studies.sensitivity.claims import claims_table
 from rssnav.experiments.studies.sensitivity.tables import outcome_table, summary_table
 from rssnav.experiments.studies.study import Study
 from rssnav.experiments.tables import Table
@@ -27,9 +28,9 @@ _ROWS = {choice: row for row, choice in enumerate((OURS, FLOWN, *ALTERNATIVES))}
 
 
 def make_tables(outcomes: Sequence[Outcome]) -> tuple[Table, ...]:
-    """Make the summary and the table of all outcomes."""
+    """Make the summary, the table of all outcomes and that of the paper's claims."""
     ordered = _in_order(outcomes)
-    return summary_table(ordered), outcome_table(ordered)
+    return summary_table(ordered), outcome_table(ordered), claims_table(ordered)
 
 
 def draw_figures(outcomes: Sequence[Outcome]) -> dict[str, Figure]:

@@ -21,6 +21,7 @@ from rssnav.experiments.studies.sensitivity.alternatives import (
     Trial,
     measure,
 )
+from rssnav.experiments.studies.sensitivity.claims import claims_table
 from rssnav.experiments.studies.sensitivity.tables import outcome_table, summary_table
 from rssnav.experiments.studies.study import Conditions
 from rssnav.experiments.training_store import TrainingStore
@@ -44,7 +45,8 @@ def test_every_alternative_differs_from_our_interpretation_in_one_respect():
             if getattr(alternative.learning, name) != getattr(QLearning(), name)
         ]
         others = [alternative.coherent, alternative.episodes is not None]
-        assert len(changed) + sum(others) == 1 or set(changed) == {"decay", "eta"}
+        respects = len(set(changed) - {"eta"}) + sum(others)
+        assert respects == 1 or (alternative.parameter == "training" and respects == 2)
     assert len({alternative.label for alternative in ALTERNATIVES}) == len(ALTERNATIVES)
 
 
@@ -125,6 +127,32 @@ def test_outcome_table_has_an_interval_and_survives_runs_that_never_arrive():
     assert quick["difference_low_m"] <= 10.0 <= quick["difference_high_m"]
     assert flown["mean_m"] is None
     assert flown["converged"] == 0
+
+
+def test_claims_are_counted_by_their_means():
+    keys = {(agent, speed): Configuration(1, agent, speed) for agent in AGENTS for speed in (1, 2)}
+    outcomes = [
+        replace(
+            outcome(OURS, key, [length_m, length_m], episodes=(episodes, episodes)),
+            turns=np.array([turns, turns], float),
+            fewest_steps=fewest,
+        )
+        for key, length_m, episodes, turns, fewest in (
+            (keys["rss", 1], 110.0, 50.0, 4, 52),
+            (keys["location", 1], 100.0, 40.0, 5, 40),
+            (keys["rss", 2], 99.0, 45.0, 4, 50),
+            (keys["location", 2], 99.0, 45.0, 3, 50),
+        )
+    ]
+    (row,) = claims_table(outcomes).records()
+    assert (row["farther"], row["more_turns"]) == ("1 of 2", "1 of 2")
+    assert (row["episodes_fall"], row["flight_time_falls"]) == ("1 of 2", "1 of 2")
+    assert row["good"] == "1 of 2"  # 55 steps of 52, 50 of 40
+
+
+def test_claims_without_flights_are_not_counted():
+    (row,) = claims_table([outcome(FLOWN, KEY, [], episodes=())]).records()
+    assert (row["farther"], row["episodes_fall"], row["good"]) == ("0 of 0", "0 of 0", "0 of 1")
 
 
 def test_figure_has_a_marker_per_outcome_and_hollow_ones_where_runs_do_not_converge():
