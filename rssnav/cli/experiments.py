@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Output folder.")]
 RESULTS = Path("results")
+OUR_PLANS = ("scenario1", "scenario2")
 
 
 class What(StrEnum):
@@ -90,6 +91,13 @@ def run_experiments(
             "the last or the first. Flights of all its lengths exist if one is left out."
         ),
     ] = StepCount.WITHOUT_LAST,
+    plans: Annotated[
+        tuple[str, str],
+        typer.Option(
+            metavar="PLAN PLAN",
+            help="Floor plans of Scenarios 1 and 2: built-in names or TOML files.",
+        ),
+    ] = OUR_PLANS,
     style: Style = None,
     max_memory: MaxMemory = None,
     threads: Threads = None,
@@ -99,12 +107,15 @@ def run_experiments(
     Results that are up to date are reused. Finished runs are saved every few seconds, so that the
     same command resumes after Ctrl-C or a crash.
     """
-    if what is not What.PAPER and (runs is not None or count is not StepCount.WITHOUT_LAST):
-        raise typer.BadParameter("--runs and --count apply to the paper only.")
+    only_defaults = runs is None and count is StepCount.WITHOUT_LAST and plans == OUR_PLANS
+    if what is not What.PAPER and not only_defaults:
+        raise typer.BadParameter("--runs, --count and --plans apply to the paper only.")
     max_memory_bytes = in_bytes(max_memory)
     try:
         if what is What.PAPER:
-            _run_paper(out, quick, runs, seed, threads, max_memory_bytes, resume, count, style)
+            _run_paper(
+                out, quick, runs, seed, threads, max_memory_bytes, resume, count, plans, style
+            )
         else:
             _run_study(what, out, quick, seed, threads, max_memory_bytes, resume, style)
     except KeyboardInterrupt as interrupt:
@@ -123,6 +134,7 @@ def _run_paper(
     max_memory_bytes: int | None,
     resume: bool,
     count: StepCount,
+    plans: tuple[str, str],
     style: str | None,
 ) -> None:
     from rssnav.experiments.paper import run_paper
@@ -138,6 +150,7 @@ def _run_paper(
             threads=threads,
             max_memory_bytes=max_memory_bytes,
             resume=resume,
+            plans=plans,
             count=Count[count.name],
             progress=show,
             notice=note,

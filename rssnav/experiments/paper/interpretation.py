@@ -32,7 +32,8 @@ INTERPRETATIONS: tuple[Interpretation, ...] = (
         "Reconstructed; only sizes, source, start, wall and door heights are the paper's.",
         "The plans were never published. They were chosen so that the source can be reached at all "
         "speeds, every cell has a path, and flights come out near the paper's lengths: agreement "
-        "with its table is partly a fit.",
+        "with its table is partly a fit. Some printed flights do not exist in them; `rssnav "
+        "experiments plans` finds plans in which all do.",
     ),
     Interpretation(
         "Position of the grid",

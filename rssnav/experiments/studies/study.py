@@ -15,6 +15,7 @@ from typing import Generic, TypeVar
 
 from matplotlib.figure import Figure
 
+from atomicfiles import atomic_write
 from rssnav.agents import Agent
 from rssnav.experiments.paper.scenarios import (
     PLANS,
@@ -107,6 +108,8 @@ class Study(Generic[PieceT, OutcomeT]):
         From all outcomes to the tables.
     figures : callable
         From all outcomes to the figures, by the name of their files.
+    texts : callable
+        From all outcomes to further text files, by their paths below the output folder.
     needs_maps : bool
         Whether a piece uses the scenarios; otherwise there are none in its conditions.
     """
@@ -118,6 +121,7 @@ class Study(Generic[PieceT, OutcomeT]):
     measure: Callable[[PieceT, Conditions], Sequence[OutcomeT]]
     tables: Callable[[Sequence[OutcomeT]], tuple[Table, ...]]
     figures: Callable[[Sequence[OutcomeT]], dict[str, Figure]]
+    texts: Callable[[Sequence[OutcomeT]], dict[str, str]] = lambda _: {}
     needs_maps: bool = True
 
 
@@ -130,7 +134,7 @@ class StudyResult:
     tables : tuple of Table
         What it measured.
     files : tuple of Path
-        Every file it wrote: the tables as CSV and Markdown, the figures as PNG.
+        Every file it wrote: the tables as CSV and Markdown, the figures as PNG, and texts.
     """
 
     tables: tuple[Table, ...]
@@ -204,15 +208,20 @@ def run_study(
         progress(study.name, done, len(study.pieces))
         outcomes += study.measure(piece, conditions)
     progress(study.name, len(study.pieces), len(study.pieces))
-    return _write(out, study.tables(outcomes), study.figures(outcomes))
+    return _write(study, out, outcomes)
 
 
-def _write(out: Path, tables: tuple[Table, ...], figures: dict[str, Figure]) -> StudyResult:
-    """Write the tables below ``tables/`` and the figures below ``figures/``."""
+def _write(study: Study[PieceT, OutcomeT], out: Path, outcomes: Sequence[OutcomeT]) -> StudyResult:
+    """Write the tables below ``tables/``, the figures below ``figures/``, and the texts."""
+    tables = study.tables(outcomes)
     files: list[Path] = []
     for table in tables:
         files += [table.save_csv(out / "tables"), table.save_markdown(out / "tables")]
-    for key, figure in figures.items():
+    for key, figure in study.figures(outcomes).items():
         save_figure(figure, out / "figures" / key)
         files.append(out / "figures" / f"{key}.png")
+    for name, text in study.texts(outcomes).items():
+        with atomic_write(out / name) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+        files.append(out / name)
     return StudyResult(tables, tuple(files))

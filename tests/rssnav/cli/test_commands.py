@@ -19,8 +19,10 @@ import floorplans
 import rssnav.experiments.paper
 from raytrace import RadioMap, TraceConfig
 from rssnav import TrainingResult
+from rssnav.cli import experiments
 from rssnav.cli.plan_sketch import sketch
 from rssnav.experiments.paper.counting import Count
+from rssnav.experiments.paper.scenarios import PLANS
 
 COMMANDS = (
     (),
@@ -285,19 +287,24 @@ class PaperRun:
         return self
 
 
+def test_the_plans_of_the_experiments_are_the_built_in_ones() -> None:
+    assert experiments.OUR_PLANS == PLANS
+
+
 def test_experiments_passes_its_options_on(monkeypatch, tmp_path) -> None:
     paper = PaperRun()
     monkeypatch.setattr(rssnav.experiments.paper, "run_paper", paper)
     result = run(
-        "experiments", "--quick", "--out", tmp_path, "--runs", 3, "--seed", 5, "--no-resume"
-    )
+        "experiments", "--quick", "--out", tmp_path, "--runs", 3, "--seed", 5, "--no-resume",
+        "--plans", "flat", "mine.toml",
+    )  # fmt: skip
     assert result.exit_code == 0
     assert "report: results/report.html" in result.stdout
     assert result.stderr.endswith("a map is up to date\n")
     assert paper.out == tmp_path
     assert paper.options == {
         "quick": True, "runs": 3, "seed": 5, "threads": None, "max_memory_bytes": None,
-        "resume": False, "count": Count.WITHOUT_LAST,
+        "resume": False, "count": Count.WITHOUT_LAST, "plans": ("flat", "mine.toml"),
     }  # fmt: skip
 
 
@@ -367,7 +374,8 @@ def test_the_explorer_limits_the_memory_of_a_tab(options, limit, monkeypatch) ->
 
 
 def test_a_study_refuses_the_options_of_the_paper(tmp_path) -> None:
-    assert run("experiments", "noise", "--runs", 3, "--out", tmp_path).exit_code == 2
+    for options in (("--runs", 3), ("--count", "all"), ("--plans", "flat", "flat")):
+        assert run("experiments", "noise", *options, "--out", tmp_path).exit_code == 2
 
 
 def test_report_without_a_run_says_how_to_make_one(tmp_path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 import floorplans
 from floorplans import FloorPlan
+from raytrace import RadioMap
 from rssnav.experiments.paper.claims.flights import turns
 from rssnav.experiments.paper.counting import SUPPORTED_COUNT, counted_lengths_m
 from rssnav.experiments.paper.data import AGENTS, Configuration, flights
@@ -18,6 +19,7 @@ from rssnav.experiments.paper.trainings import EPISODE_LIMIT, STEP_LIMIT
 from rssnav.experiments.studies.plan_search.constraints import allows_printed_flights
 from rssnav.experiments.studies.plan_search.families import draw
 from rssnav.experiments.studies.study import Conditions
+from rssnav.experiments.training_store import TrainingStore
 from rssnav.maps import make_map
 from rssnav.results import TrainingResult
 from rssnav.world import GridWorld
@@ -100,16 +102,22 @@ class Fit:
 
 
 def measure(piece: Piece, conditions: Conditions) -> list[Fit]:
-    """Draw the plans of a piece, and train in those that allow the printed flights.
+    """Draw the plans of a piece, and train in those that meet all conditions.
+
+    They allow the printed flights, and every cell has a path, as each state of the paper's agent
+    has its RSS.
 
     Raises
     ------
     TrainingInterrupted
         On Ctrl-C.
     """
-    return [
-        _fit(piece, number, plan, conditions) for number, plan in _plans(piece, conditions.seed)
-    ]
+    fits: list[Fit] = []
+    for number, plan in _plans(piece, conditions.seed):
+        radio_map = _kept_map(piece, number, plan, conditions.store)
+        if np.isfinite(radio_map.rss_dbm).all():
+            fits.append(_fit(piece, number, plan, radio_map, conditions))
+    return fits
 
 
 def _plans(piece: Piece, seed: int) -> Iterator[tuple[int, FloorPlan]]:
@@ -124,14 +132,14 @@ def _plans(piece: Piece, seed: int) -> Iterator[tuple[int, FloorPlan]]:
             yield number, plan
 
 
-def _fit(piece: Piece, number: int, plan: FloorPlan, conditions: Conditions) -> Fit:
-    store = conditions.store
-    radio_map = make_map(
-        plan,
-        store.folder / store.file_name(f"{piece.label} {number} scenario {piece.scenario} map"),
-        threads=store.threads,
-        force=not store.resume,
-    )
+def _kept_map(piece: Piece, number: int, plan: FloorPlan, store: TrainingStore) -> RadioMap:
+    name = store.file_name(f"{piece.label} {number} scenario {piece.scenario} map")
+    return make_map(plan, store.folder / name, threads=store.threads, force=not store.resume)
+
+
+def _fit(
+    piece: Piece, number: int, plan: FloorPlan, radio_map: RadioMap, conditions: Conditions
+) -> Fit:
     trained: dict[Configuration, TrainingResult] = {}
     for speed in SPEEDS:
         world = GridWorld.from_map(plan, radio_map, speed)

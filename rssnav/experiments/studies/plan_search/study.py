@@ -1,8 +1,8 @@
 """Floor plans in which the printed flights exist, and how long agents fly that are trained there.
 
 Plans are drawn at random from a family per scenario. Those that allow the printed flights, and none
-with fewer steps, are traced, and both agents are trained in them at all speeds. A plan's score is
-the number of printed lengths and claims that it meets.
+with fewer steps, are traced. In those in which every cell has a path both agents are trained at all
+speeds. A plan's score is the number of printed lengths and claims that it meets.
 """
 
 from __future__ import annotations
@@ -30,5 +30,6 @@ STUDY = Study(
         tables.fits(found),
     ),
     figures=lambda found: {"plans": figure.draw(found)},
+    texts=tables.best_plans,
     needs_maps=False,
 )

@@ -234,6 +234,8 @@ def test_statistics_of_flights():
     world = small_data().result(1, "rss", 1).world
     flight = np.array([0, 1, 2])
     assert mean_rss_dbm(world, [flight])[0] == pytest.approx(world.rss_dbm[:3].mean())
+    dark = replace(world, rss_dbm=np.where(np.arange(world.n_states) < 2, -np.inf, world.rss_dbm))
+    assert mean_rss_dbm(dark, [flight])[0] == pytest.approx((-300.0 + world.rss_dbm[2]) / 3.0)
     weakest = np.argsort(world.rss_dbm)[:1]
     strongest = np.argsort(world.rss_dbm)[-1:]
     assert strong_percentage(world, [weakest, strongest]).tolist() == [0.0, 100.0]

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 import floorplans
-from raytrace import Grid
+from raytrace import Grid, TraceConfig
 from rssnav.experiments.paper.counting import Count
 from rssnav.experiments.paper.data import CONFIGURATIONS
-from rssnav.experiments.studies.plan_search import tables
+from rssnav.experiments.progress import ignore
+from rssnav.experiments.studies.plan_search import figure, fits, tables
 from rssnav.experiments.studies.plan_search.constraints import (
     allows_printed_flights,
     arrivals,
@@ -24,6 +25,9 @@ from rssnav.experiments.studies.readings.empty_floor import FLOORS, lattice
 from rssnav.experiments.studies.readings.empty_floor import arrivals as empty_arrivals
 from rssnav.experiments.studies.readings.interpretations import STATED_GOAL, Geometry
 from rssnav.experiments.studies.readings.lengths import StepCounts
+from rssnav.experiments.studies.study import Conditions
+from rssnav.experiments.training_store import TrainingStore
+from rssnav.maps import make_map
 from rssnav.missions.layout import Layout
 
 KNOWN_SEED = {1: 560, 2: 36}
@@ -155,9 +159,31 @@ def test_each_deviation_stands_below_its_configuration() -> None:
         assert row[f"{key.agent}_{key.speed}_percent"] == pytest.approx(100.0 * deviation[key])
 
 
-def test_the_best_plan_is_the_first_drawn_one() -> None:
-    numbers = [row["score"] for row in tables.fits(FOUND).records()]
-    assert numbers == [12, 10, 5]
+def test_the_best_drawn_plan_is_written() -> None:
+    texts = [replace(f, toml=f"score {f.score}") for f in (*FOUND, FOUND[2])]
+    assert [row["score"] for row in tables.fits(texts).records()] == [12, 10, 5, 5]
+    assert tables.best_plans(texts) == {"plans/scenario1.toml": "score 10"}
+
+
+def test_plans_with_a_cell_that_no_path_reaches_are_left_out(monkeypatch, tmp_path) -> None:
+    plan = floorplans.load("flat")
+    radio_map = make_map(plan, config=TraceConfig(2, 0))
+    rss_dbm = radio_map.rss_dbm.copy()
+    rss_dbm[0, 0] = -np.inf
+    covered = np.full_like(rss_dbm, -50.0)
+    maps = [replace(radio_map, rss_dbm=values) for values in (covered, rss_dbm)]
+    monkeypatch.setattr(fits, "_plans", lambda *_: enumerate([plan, plan]))
+    monkeypatch.setattr(fits, "make_map", lambda *_, **__: maps.pop(0))
+    monkeypatch.setattr(fits, "_fit", lambda piece, number, *_: number)
+    store = TrainingStore(tmp_path, 1, True, ignore)
+    assert fits.measure(Piece(1, 0), Conditions({}, {}, 1, 0, store)) == [0]
+
+
+def test_the_figure_has_a_line_per_plan_and_agent() -> None:
+    drawn = figure.draw(FOUND)
+    lines = [[line for line in ax.lines if len(line.get_xdata()) == 3] for ax in drawn.axes]
+    assert [len(each) for each in lines] == [2 * len(FOUND), 0]
+    np.testing.assert_allclose(lines[0][2].get_ydata(), [-1.0, 2.0, 30.0])
 
 
 def test_a_plan_without_arrivals_fits_worst() -> None:
