@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 
 from floorplans.repair.geometry import (
     Change,
@@ -198,8 +199,7 @@ def _moved_together(
 ) -> NDArray[np.float64]:
     """Ends (n, 2, 2); those closer together than the reach are moved to one, a fixed one if any."""
     flat = ends.reshape(-1, 2)
-    points = _points(flat)
-    first, second = shapely.STRtree(points).query(points, predicate="dwithin", distance=reach_m)
+    first, second = KDTree(flat).query_pairs(reach_m, output_type="ndarray").T
     graph = coo_array((np.ones(first.size), (first, second)), shape=(flat.shape[0],) * 2)
     _, labels = connected_components(graph, directed=False)
     order = np.argsort(labels, kind="stable")

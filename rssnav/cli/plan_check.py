@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -19,14 +19,13 @@ from floorplans.loading import builtin_names, loads_unchecked, read_text
 from floorplans.repair.plan import RepairedPlan, repair_plan
 from floorplans.repair.walls import Change
 from floorplans.unchecked import PlanFile, UncheckedPlan
-from raytrace import SceneError
-from rssnav import WorldError
 from rssnav.cli.console import note, print_json, print_table, say
 from rssnav.cli.options import Json, Plan, check_suffix, examples
 from rssnav.cli.plan_summary import print_summary, summary_of
 from rssnav.messages import printable
-from rssnav.reachability import Reach, reach_by_speed, unreached
-from rssnav.scenes import scene_of
+
+if TYPE_CHECKING:
+    from rssnav.reachability import Reach
 
 
 def add_to(parent: typer.Typer) -> None:
@@ -100,6 +99,10 @@ def _safe_repair(plan: UncheckedPlan) -> RepairedPlan:
 
 def _is_usable(plan: UncheckedPlan) -> bool:
     """Whether a plan has no errors, and its source can be reached if it has one."""
+    from raytrace import SceneError
+    from rssnav import WorldError
+    from rssnav.scenes import scene_of
+
     try:
         checked = FloorPlan.of(plan)
         scene_of(checked)
@@ -128,6 +131,9 @@ def _write(repaired: RepairedPlan, old_text: str, path: Path, output: Path | Non
 
 
 def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool) -> None:
+    from rssnav.reachability import unreached
+    from rssnav.scenes import scene_of
+
     findings = list(inspect(file))
     errors = [finding for finding in findings if finding.severity == "error"]
     flights: tuple[Reach, ...] = ()
@@ -168,12 +174,14 @@ def _warnings_text(n_warnings: int) -> str:
     return f", but see {n_warnings} warning{'s' if n_warnings > 1 else ''} above"
 
 
-def _flights(plan: FloorPlan) -> tuple[Reach, ...]:
+def _flights(plan: FloorPlan) -> tuple["Reach", ...]:
     """What a flight can reach; empty for a plan without source or start."""
+    from rssnav.reachability import reach_by_speed
+
     return () if plan.source is None or plan.start is None else reach_by_speed(plan)
 
 
-def _row(reach: Reach) -> dict[str, Any]:
+def _row(reach: "Reach") -> dict[str, Any]:
     return {
         "speed": reach.speed,
         "steps": reach.steps,
@@ -183,7 +191,9 @@ def _row(reach: Reach) -> dict[str, Any]:
     }
 
 
-def _print_checked(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence[Finding]) -> None:
+def _print_checked(
+    plan: FloorPlan, flights: Sequence["Reach"], findings: Sequence[Finding]
+) -> None:
     """Print what concerns a map, and what concerns a flight only."""
     print_summary(plan)
     for_map = [finding for finding in findings if finding.concerns == "map"]
@@ -199,7 +209,7 @@ def _print_checked(plan: FloorPlan, flights: Sequence[Reach], findings: Sequence
         say(f"not checked, because the plan has no {missing}")
 
 
-def _print_flights(flights: Sequence[Reach]) -> None:
+def _print_flights(flights: Sequence["Reach"]) -> None:
     say("shortest flight from the start to the source")
     print_table(
         (">speed", ">steps", ">length", ""),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPoint, Polygon
 
 from floorplans.errors import PlanError
-from floorplans.importers.assembly.outline_gaps import gap_links, link_lengths
+from floorplans.importers.assembly.outline_gaps import gap_links, hull_links, link_lengths
 from floorplans.importers.assembly.recesses import without_recesses
 from floorplans.importers.assembly.wall_network import (
     ON_EDGE_M,
@@ -157,7 +157,7 @@ def _enclosed_region(
     if closed and closed.enclosed > 1 - _ENOUGH:
         return closed
     outer = network if closed is None or given is not None else network.around(closed.polygon)
-    links = gap_links(outer.lines, max(limit_m, CLOSED_GAP_M))
+    links = _links(lines, outer, max(limit_m, CLOSED_GAP_M))
     corridor_m = inf if is_strict or given is not None else _CORRIDOR_M
     found = _best_region(lines, outer, links, given, (limit_m, corridor_m))
     if is_strict and limit_m < CLOSED_GAP_M:
@@ -166,11 +166,19 @@ def _enclosed_region(
             return wider
     if found and (found.enclosed > _MOSTLY_OPEN or _is_closed(network, links, found)):
         return found
-    links = gap_links(outer.lines, max(_GAPS_M))
+    links = _links(lines, outer, max(_GAPS_M))
     wider = _best_region(lines, outer, links, given, (max(_GAPS_M), inf))
     if found and not (wider and wider.enclosed > _MOSTLY_OPEN):
         return found
     return wider or _hull(lines)
+
+
+def _links(lines: Lines, outer: Network, max_gap_m: float) -> NDArray[np.float64]:
+    """Links up to a length; beyond what is closed by default, also those of missing sides."""
+    links = gap_links(outer.lines, max_gap_m)
+    if max_gap_m <= CLOSED_GAP_M:
+        return links
+    return np.concatenate([links, hull_links(lines, max_gap_m)])
 
 
 def _best_region(

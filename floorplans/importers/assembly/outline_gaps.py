@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import shapely
@@ -52,18 +52,27 @@ def gap_links(lines: Lines, max_gap_m: float) -> Segments:
     tree = shapely.STRtree(lines)
     owner, ends, ahead = _free_ends(lines, tree)
     at_corner, corners, along = _corners(lines, tree)
-    links = np.concatenate(
+    return _clear(
         [
             _to_ends(ends, max_gap_m),
             _to_walls(owner, ends, lines, tree, max_gap_m),
             _straight_ahead(owner, ends, ahead, lines, tree, max_gap_m),
             _straight_ahead(at_corner, corners, along, lines, tree, max_gap_m),
             _between_groups(lines, tree, max_gap_m),
-        ]
+        ],
+        tree,
+        max_gap_m,
     )
-    lengths = link_lengths(links)
-    links = links[(lengths > 10 * TOLERANCE_M) & (lengths <= max_gap_m)]
-    return links[_unobstructed(links, tree)]
+
+
+def hull_links(lines: Lines, max_gap_m: float) -> Segments:
+    """Links along the sides of the smallest convex region around all walls, as of `gap_links`.
+
+    A building that lacks whole sides is closed by them: its far ends are nobody's nearest.
+    """
+    ring = shapely.get_coordinates(shapely.convex_hull(shapely.multilinestrings(lines)))
+    sides = np.stack([ring[:-1], ring[1:]], axis=1)
+    return _clear([sides], shapely.STRtree(lines), max_gap_m)
 
 
 def link_lengths(links: Segments) -> NDArray[np.float64]:
@@ -272,6 +281,14 @@ def _first_of_each(which: NDArray[np.int64], value: NDArray[np.float64]) -> NDAr
     order = np.lexsort((value, which))
     _, first = np.unique(which[order], return_index=True)
     return order[first]
+
+
+def _clear(links: Sequence[Segments], tree: shapely.STRtree, max_gap_m: float) -> Segments:
+    """Links that are neither too short nor too long, without a wall in between."""
+    found = np.concatenate(links)
+    lengths = link_lengths(found)
+    found = found[(lengths > 10 * TOLERANCE_M) & (lengths <= max_gap_m)]
+    return found[_unobstructed(found, tree)]
 
 
 def _unobstructed(links: Segments, tree: shapely.STRtree) -> NDArray[np.bool_]:

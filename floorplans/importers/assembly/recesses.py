@@ -9,7 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from shapely.geometry import Polygon
 
-from floorplans.importers.assembly.wall_network import ON_EDGE_M, Lines, Network, middles
+from floorplans.importers.assembly.wall_network import Lines, Network, middles
 from floorplans.walls import TOLERANCE_M
 
 
@@ -33,11 +33,9 @@ def without_recesses(region: Polygon, gaps: NDArray[np.float64], network: Networ
     """
     if not len(gaps):
         return region
-    faces = network.with_only(gaps).faces()
-    wide = region.buffer(ON_EDGE_M)
-    shapely.prepare(wide)
-    faces = faces[shapely.covers(wide, faces)]
-    sides = _Sides(faces, network.wall_pieces)
+    near = network.within(region)
+    faces = near.with_only(gaps).faces()
+    sides = _Sides(faces, near.wall_pieces)
     across = middles(np.array(shapely.linestrings(gaps), dtype=np.object_))
     behind = shapely.STRtree(faces).query(across, "dwithin", distance=TOLERANCE_M)[1]
     for k in dict.fromkeys(behind.tolist()):

@@ -43,8 +43,8 @@ class Network:
     def with_links(self, links: NDArray[np.float64]) -> Network:
         """Network with further links (n, 2, 2) [m]."""
         closing = np.array(shapely.linestrings(_on_nodes(links, self._pieces)), dtype=np.object_)
-        tree = shapely.STRtree(self._pieces)
-        touched = np.unique(tree.query(closing, "dwithin", distance=TOLERANCE_M)[1])
+        near = shapely.STRtree(closing).query(self._pieces, "dwithin", distance=TOLERANCE_M)
+        touched = np.unique(near[0])
         met = _noded(np.concatenate([_cut(self._pieces[touched], links), closing]))
         walls = shapely.STRtree(self._pieces[touched][self._is_wall[touched]])
         on_wall = np.zeros(len(met), dtype=np.bool_)
@@ -62,9 +62,15 @@ class Network:
 
     def with_only(self, gaps: NDArray[np.float64]) -> Network:
         """Network with only those pieces of links that are given (n, 2, 2) [m]."""
-        wanted = KDTree(gaps.mean(axis=1))
-        apart_m, _ = wanted.query(shapely.get_coordinates(middles(self._pieces)))
+        apart_m, _ = KDTree(gaps.mean(axis=1)).query(_ends(self._pieces).mean(axis=1))
         kept = self._is_wall | (apart_m <= TOLERANCE_M)
+        return Network(self.lines, self._pieces[kept], self._is_wall[kept])
+
+    def within(self, region: Polygon) -> Network:
+        """What lies in a region or on its edge."""
+        wide = region.buffer(ON_EDGE_M)
+        shapely.prepare(wide)
+        kept = shapely.covers(wide, self._pieces)
         return Network(self.lines, self._pieces[kept], self._is_wall[kept])
 
     def faces(self) -> Lines:
@@ -85,7 +91,7 @@ def _cut(pieces: Lines, links: NDArray[np.float64]) -> Lines:
     """Pieces cut where links (n, 2, 2) end on them, at exactly their ends."""
     ends = np.unique(links.reshape(-1, 2), axis=0)
     piece, end = shapely.STRtree(_points(ends)).query(pieces, "dwithin", distance=TOLERANCE_M)
-    first, last = shapely.get_coordinates(pieces).reshape(-1, 2, 2).transpose(1, 0, 2)
+    first, last = _ends(pieces).transpose(1, 0, 2)
     step = last - first
     s = np.sum((ends[end] - first[piece]) * step[piece], axis=1) / np.hypot(*step[piece].T)
     inner = (s > TOLERANCE_M) & (s < np.hypot(*step[piece].T) - TOLERANCE_M)
@@ -107,8 +113,7 @@ def _noded(lines: Lines) -> Lines:
 
 def middles(lines: Lines) -> Lines:
     """Points halfway along lines."""
-    half = shapely.line_interpolate_point(lines, 0.5, normalized=True)
-    return np.array(half, dtype=np.object_)
+    return _points(_ends(lines).mean(axis=1))
 
 
 def not_within(lines: Lines, region: Polygon) -> Lines:
@@ -120,6 +125,11 @@ def _is_outside(lines: Lines, region: Polygon) -> NDArray[np.bool_]:
     inner = region.buffer(-ON_EDGE_M)
     shapely.prepare(inner)
     return np.array(~shapely.contains_properly(inner, lines), dtype=np.bool_)
+
+
+def _ends(lines: Lines) -> NDArray[np.float64]:
+    """Ends of straight lines, (n, 2, 2)."""
+    return shapely.get_coordinates(lines).reshape(-1, 2, 2)
 
 
 def _points(places: NDArray[np.float64]) -> NDArray[np.object_]:

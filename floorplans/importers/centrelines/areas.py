@@ -18,10 +18,11 @@ from itertools import pairwise
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString, Polygon, box
+from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.importers.centrelines.axes import Axis, on_common_lines
+from floorplans.importers.centrelines.tiles import Tiles
 from floorplans.importers.draft import RawWall
 
 MAX_THICKNESS_M = 1.0
@@ -37,7 +38,6 @@ _PARALLEL = np.cos(np.radians(12.0))
 _LONG = 4.0  # area over squared width from which a thick part is a heavy wall
 _FACING_FRACTION = 0.6  # of the thickness, on which the two sides of a wall must face each other
 _BEND = np.sin(np.radians(1.0))
-_TILES = 8.0  # times the reach: side of a tile of the solid
 _REACH = 2.0  # times the thickest wall: how far an end may be extended to meet another wall
 
 Vectors = NDArray[np.float64]
@@ -212,7 +212,7 @@ def _joined(walls: list[RawWall], rings: list[RawWall], whole: BaseGeometry) -> 
 
 
 class _Solid:
-    """The solid near a place: a building's walls are one large area, of which a line meets little.
+    """The solid of all walls.
 
     Attributes
     ----------
@@ -224,28 +224,19 @@ class _Solid:
         shapely.prepare(solid)
         self.reach_m = reach_m
         self._solid = solid
-        self._side_m = max(_TILES * reach_m, MAX_THICKNESS_M)
-        self._tiles: dict[tuple[int, int], BaseGeometry] = {}
+        self._tiles = Tiles(solid)
 
     def last_point(self, start: Vectors, end: Vectors) -> Vectors:
         """Point up to which the line from `start` to `end`, no longer than the reach, is solid."""
         line = LineString([start, end])
         if self._solid.covers(line):
             return end
-        for part in shapely.get_parts(line.intersection(self._around(start))):
+        near = self._tiles.around(float(start[0]), float(start[1]), self.reach_m)
+        for part in shapely.get_parts(line.intersection(near)):
             points = shapely.get_coordinates(part)
             if len(points) and np.hypot(*(points - start).T).min() < 1e-5:
                 return points[np.argmax(np.hypot(*(points - start).T))]
         return start
-
-    def _around(self, start: Vectors) -> BaseGeometry:
-        """Solid within the reach of a point, and some more."""
-        i, j = (int(k) for k in np.floor(start / self._side_m))
-        if (i, j) not in self._tiles:
-            low = np.array([i, j]) * self._side_m - 2 * self.reach_m
-            high = low + self._side_m + 4 * self.reach_m
-            self._tiles[i, j] = self._solid.intersection(box(*low, *high))
-        return self._tiles[i, j]
 
 
 def _extended(wall: RawWall, solid: _Solid) -> LineString:

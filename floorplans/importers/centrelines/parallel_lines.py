@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -18,8 +18,15 @@ _MIN_OVERLAP_M = 0.05
 _MIN_SINGLE_M = 0.3
 """Unpaired lines shorter than this are jambs and caps, not walls [m]."""
 _CAP_M = 0.03
+_JAMB_M = 1.0
+"""Shorter lines may be jambs; a wall that is thicker is heavy only if it is very long [m]."""
+_LONG, _VERY_LONG = 1.5, 4.0
+"""Length of the faces of a heavy wall, as a multiple of its thickness."""
+_FEW_SINGLE = 0.2
+"""Fraction of the lines that are single in a drawing that shows walls by both faces."""
 
 Segments = NDArray[np.float64]
+Areas = NDArray[np.object_]
 
 
 @dataclass(frozen=True)
@@ -30,13 +37,18 @@ class Strip:
     end: Point
     thickness_m: float
 
-    def area(self, extension_m: float = 0.0) -> Polygon:
-        """Rectangle of the strip, extended at both ends."""
-        a, b = np.array(self.start), np.array(self.end)
-        along = (b - a) / np.hypot(*(b - a))
-        across = np.array([-along[1], along[0]]) * self.thickness_m / 2
-        a, b = a - along * extension_m, b + along * extension_m
-        return Polygon([a + across, b + across, b - across, a - across])
+
+def _areas(strips: Sequence[Strip], extension_m: NDArray[np.float64] | float) -> Areas:
+    """Rectangles of strips, each extended at both ends, (n,)."""
+    ends = np.array([(strip.start, strip.end) for strip in strips]).reshape(-1, 2, 2)
+    along = ends[:, 1] - ends[:, 0]
+    along /= np.hypot(along[:, 0], along[:, 1])[:, None]
+    half_m = np.array([strip.thickness_m for strip in strips])[:, None] / 2
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1) * half_m
+    ahead = along * np.broadcast_to(extension_m, len(strips))[:, None]
+    a, b = ends[:, 0] - ahead, ends[:, 1] + ahead
+    corners = np.stack([a + across, b + across, b - across, a - across], axis=1)
+    return np.array(shapely.polygons(corners), dtype=np.object_)
 
 
 @dataclass
@@ -73,15 +85,21 @@ class StripWalls:
     singles: Segments
 
 
-def strips_of_lines(segments: Segments, max_thickness_m: float) -> StripWalls:
+def strips_of_lines(segments: Segments, max_thickness_m: float, heavy_m: float = 0.0) -> StripWalls:
     """Pair lines that face each other, the nearest first; each section has one partner.
+
+    Lines farther apart are the faces of heavy walls in a drawing that shows walls by both faces:
+    where hardly any line is left single if they are. In a drawing of single lines they are the
+    sides of a narrow room; in one of thin double walls such sides have their partners already.
 
     Parameters
     ----------
     segments : (n, 2, 2) float64
         Open lines of walls, not closed outlines of wall bodies [m].
     max_thickness_m : float
-        Lines farther apart are not the sides of one wall [m].
+        Lines farther apart are not the sides of one wall, unless it is heavy [m].
+    heavy_m : float
+        Largest thickness of heavy walls [m].
 
     Returns
     -------
@@ -97,22 +115,62 @@ def strips_of_lines(segments: Segments, max_thickness_m: float) -> StripWalls:
         for segment, step, length in zip(segments, steps, lengths, strict=True)
     ]
     strips = list(_strips(faces, segments, max_thickness_m))
-    area = [strip.area() for strip in strips]
-    return StripWalls((*area, *_corners(strips)), _singles(faces, strips))
+    if heavy_m > max_thickness_m:
+        strips += _heavy_strips(faces, heavy_m)
+    areas = _areas(strips, 0.0)
+    return StripWalls((*areas, *_corners(strips, areas)), _singles(faces, strips))
 
 
 def _strips(faces: list[_Face], segments: Segments, max_thickness_m: float) -> Iterator[Strip]:
     """Strips between pairs of faces, thin ones first."""
+    for thickness_m, i, j in _pairs(faces, segments, max_thickness_m):
+        if thickness_m >= MIN_THICKNESS_M:
+            yield from _between(faces[i], faces[j], _MIN_OVERLAP_M)
+
+
+def _pairs(
+    faces: list[_Face], segments: Segments, distance_m: float
+) -> list[tuple[float, int, int]]:
+    """Pairs of nearly parallel faces up to a distance, each after its distance, the least first."""
     lines = np.array(shapely.linestrings(segments), dtype=np.object_)
-    pairs = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=max_thickness_m)
+    pairs = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=distance_m)
     near = pairs[:, pairs[0] < pairs[1]].T
-    along = np.array([face.along for face in faces])
+    along = np.array([face.along for face in faces]).reshape(-1, 2)
     a, b = along[near[:, 0]], along[near[:, 1]]
     near = near[np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) <= _MAX_SINE]
-    apart = [(_apart(faces[i], faces[j]), i, j) for i, j in near.tolist()]
-    for thickness_m, i, j in sorted(apart):
-        if MIN_THICKNESS_M <= thickness_m <= max_thickness_m:
-            yield from _between(faces[i], faces[j])
+    apart = ((_apart(faces[i], faces[j]), i, j) for i, j in near.tolist())
+    return sorted(pair for pair in apart if pair[0] <= distance_m)
+
+
+def _heavy_strips(faces: list[_Face], heavy_m: float) -> list[Strip]:
+    """Heavy walls between faces that have no partner; none where many lines are left single.
+
+    Marks the faces as used where there are any.
+    """
+    whole = [k for k, face in enumerate(faces) if face.length > _JAMB_M]
+    segments = np.array([_ends_of(faces[k]) for k in whole]).reshape(-1, 2, 2)
+    trial = [replace(faces[k], used=[*faces[k].used]) for k in whole]
+    strips = [
+        strip
+        for apart_m, i, j in _pairs(trial, segments, heavy_m)
+        for strip in _between(trial[i], trial[j], _least_length_m(apart_m))
+    ]
+    free = [high - low for face in trial for low, high in face.free(0.0, face.length)]
+    single_m = sum(length for length in free if length > _JAMB_M)
+    if not strips or single_m > _FEW_SINGLE * sum(face.length for face in trial):
+        return []
+    for k, face in zip(whole, trial, strict=True):
+        faces[k].used[:] = face.used
+    return strips
+
+
+def _ends_of(face: _Face) -> list[NDArray[np.float64]]:
+    return [face.start, face.start + face.along * face.length]
+
+
+def _least_length_m(thickness_m: float) -> float:
+    """Length from which on two faces are those of a wall: the more, the thicker it is [m]."""
+    return (_LONG if thickness_m <= _JAMB_M else _VERY_LONG) * thickness_m
 
 
 def _facing(face: _Face, other: _Face) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -134,8 +192,8 @@ def _apart(face: _Face, other: _Face) -> float:
     return float(np.abs(sides).mean()) if sides[0] * sides[1] > 0 else np.inf
 
 
-def _between(face: _Face, other: _Face) -> Iterator[Strip]:
-    """Strips where both faces are free; marks them as used."""
+def _between(face: _Face, other: _Face, least_m: float) -> Iterator[Strip]:
+    """Strips longer than the least where both faces are free; marks them as used."""
     s, t = _facing(face, other)
     low, high = max(s[0], 0.0), min(s[1], face.length)
     for begin, end in list(face.free(low, high)):
@@ -143,7 +201,7 @@ def _between(face: _Face, other: _Face) -> Iterator[Strip]:
         for back_low, back_high in list(other.free(max(back[0], 0.0), min(back[1], other.length))):
             ahead, _ = _facing(face, _part(other, back_low, back_high))
             section = (max(float(ahead[0]), begin), min(float(ahead[1]), end))
-            if section[1] - section[0] <= _MIN_OVERLAP_M:
+            if section[1] - section[0] <= least_m:
                 continue
             face.used.append(section)
             other.used.append((back_low, back_high))
@@ -165,20 +223,22 @@ def _strip(face: _Face, section: Interval, sides: NDArray[np.float64]) -> Strip:
     return Strip(start, end, float(np.abs(sides).mean()))
 
 
-def _corners(strips: list[Strip]) -> Iterator[Polygon]:
+def _corners(strips: list[Strip], areas: Areas) -> Iterator[Polygon]:
     """Areas missing between strips that meet: corners, Ts and crossings."""
-    areas = np.array([strip.area() for strip in strips], dtype=np.object_)
-    if not areas.size:
+    if not strips:
         return
-    thickest_m = max(strip.thickness_m for strip in strips)
-    near = shapely.STRtree(areas).query(areas, predicate="dwithin", distance=thickest_m)
-    near = near[:, near[0] < near[1]]
-    for i, j in near[:, _bent(strips, *near)].T.tolist():
-        reach_m = 1.05 * max(strips[i].thickness_m, strips[j].thickness_m) + _CAP_M
-        common = strips[i].area(reach_m).intersection(strips[j].area(reach_m))
-        touching = all(common.distance(areas[k]) < 2 * _CAP_M for k in (i, j))
-        if isinstance(common, Polygon) and common.area > 0 and touching:
-            yield common
+    thickness_m = np.array([strip.thickness_m for strip in strips])
+    pairs = shapely.STRtree(areas).query(areas, predicate="dwithin", distance=thickness_m.max())
+    i, j = pairs[:, pairs[0] < pairs[1]]
+    bent = _bent(strips, i, j)
+    i, j = i[bent], j[bent]
+    reach_m = 1.05 * np.maximum(thickness_m[i], thickness_m[j]) + _CAP_M
+    first, second = (_areas([strips[k] for k in ks.tolist()], reach_m) for ks in (i, j))
+    common = np.array(shapely.intersection(first, second), dtype=np.object_)
+    apart_m = np.maximum(*(shapely.distance(common, areas[ks]) for ks in (i, j)))
+    for area in common[(shapely.area(common) > 0) & (apart_m < 2 * _CAP_M)].tolist():
+        if isinstance(area, Polygon):
+            yield area
 
 
 def _bent(
@@ -193,7 +253,8 @@ def _bent(
 
 def _singles(faces: list[_Face], strips: list[Strip]) -> Segments:
     """Unpaired sections that are not part of a wall already, (n, 2, 2)."""
-    walls = [strip.area(strip.thickness_m + _CAP_M).buffer(_CAP_M) for strip in strips]
+    thickness_m = np.array([strip.thickness_m for strip in strips])
+    walls = shapely.buffer(_areas(strips, thickness_m + _CAP_M), _CAP_M, quad_segs=16)
     parts = [
         (_part(face, low, high), face.length)
         for face in faces
@@ -207,19 +268,18 @@ def _singles(faces: list[_Face], strips: list[Strip]) -> Segments:
     return np.array(found, dtype=np.float64).reshape(-1, 2, 2)
 
 
-def _covered(faces: list[_Face], walls: list[Polygon]) -> list[list[Interval]]:
+def _covered(faces: list[_Face], walls: Areas) -> list[list[Interval]]:
     """Sections of each face inside convex walls."""
     sections: list[list[Interval]] = [[] for _ in faces]
-    if not walls:
+    if not len(walls):
         return sections
     start, along = (
         np.array([getattr(f, x) for f in faces]).reshape(-1, 2) for x in ("start", "along")
     )
     ends = start + along * np.array([face.length for face in faces])[:, None]
     lines = np.array(shapely.linestrings(np.stack([start, ends], axis=1)), dtype=np.object_)
-    inside = np.array(walls, dtype=np.object_)
-    which, wall = shapely.STRtree(inside).query(lines, "intersects")
-    common = np.array(shapely.intersection(lines[which], inside[wall]), dtype=np.object_)
+    which, wall = shapely.STRtree(walls).query(lines, "intersects")
+    common = np.array(shapely.intersection(lines[which], walls[wall]), dtype=np.object_)
     points, pair = shapely.get_coordinates(common, return_index=True)
     s = np.sum((points - start[which[pair]]) * along[which[pair]], axis=1)
     pairs, first = np.unique(pair, return_index=True)

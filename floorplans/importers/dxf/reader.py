@@ -28,6 +28,7 @@ from floorplans.importers.centrelines.gaps import fill_gaps
 from floorplans.importers.centrelines.parallel_lines import MIN_THICKNESS_M, strips_of_lines
 from floorplans.importers.centrelines.split_by_material import by_material, without_openings
 from floorplans.importers.centrelines.spurious import without_spurious_walls
+from floorplans.importers.centrelines.tiles import Tiles
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
 from floorplans.importers.dxf.curves import Curve, scaled_curve
 from floorplans.importers.dxf.drawing import Content, Symbol, load_document, read_content
@@ -187,11 +188,7 @@ def _building(
     bodies = _bodies(content, layers)
     report(Step.FACES_PAIRED)
     area = shapely.union_all(list(bodies.area.values()))
-    ground = shapely.union_all(
-        [area, *(line for line, _ in bodies.singles), *_panes(content, layers)]
-    )
-    openings = [o for symbol in content.symbols for o in openings_of_symbol(symbol, ground)]
-    openings += _swing_openings(content, layers, ground)
+    openings = _drawn_openings(content, layers, area, bodies.singles)
     openings = join_leaves(along_walls(openings, _faces(content, layers)))
     filled = list(fill_gaps(area, openings))
     area = shapely.union_all([area, *filled])
@@ -207,6 +204,20 @@ def _building(
         *_single_walls(bodies, area),
         *glass_walls(glass, area),
     ], openings
+
+
+def _drawn_openings(
+    content: Content,
+    layers: Layers,
+    area: BaseGeometry,
+    singles: Sequence[tuple[LineString, Material]],
+) -> list[RawOpening]:
+    """Openings of blocks and of swings of leaves, in wall areas, single lines and panes."""
+    if not content.symbols and not layers.of("door"):
+        return []
+    ground = shapely.union_all([area, *(line for line, _ in singles), *_panes(content, layers)])
+    openings = [o for symbol in content.symbols for o in openings_of_symbol(symbol, ground)]
+    return openings + _swing_openings(content, layers, ground)
 
 
 def _faces(content: Content, layers: Layers) -> NDArray[np.float64]:
@@ -249,7 +260,7 @@ def _bodies(content: Content, layers: Layers) -> _Bodies:
     area: dict[Material, BaseGeometry] = {}
     singles: list[tuple[LineString, Material]] = []
     for material, (closed, segments) in by_material_.items():
-        walls = strips_of_lines(segments, PAIR_M)
+        walls = strips_of_lines(segments, PAIR_M, MAX_HEAVY_M)
         strips = [s for s in walls.area if s.difference(beside).area > s.area / 2]
         area[material] = shapely.union_all([*closed, *strips])
         singles += [(LineString(ends), material) for ends in walls.singles]
@@ -269,12 +280,14 @@ def _check_number(curves: Mapping[Material, Sequence[Curve]]) -> None:
 
 def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:
     """Walls on unpaired lines, except beside a wall's face."""
-    wide = shapely.get_parts(area.buffer(_AT_FACE_M))
-    lines = np.array([line for line, _ in bodies.singles], dtype=object)
-    line_of, near = shapely.STRtree(wide).query(lines, "intersects")
-    beside = np.split(near, np.searchsorted(line_of, np.arange(1, len(lines))))
-    for (line, material), parts in zip(bodies.singles, beside, strict=bool(len(lines))):
-        free = line.difference(shapely.union_all(wide[parts])) if len(parts) else line
+    wide = area.buffer(_AT_FACE_M)
+    tiles = Tiles(wide)
+    shapely.prepare(wide)
+    lines = np.array([line for line, _ in bodies.singles], dtype=np.object_)
+    near = shapely.intersects(wide, lines).tolist()
+    for (line, material), is_near in zip(bodies.singles, near, strict=True):
+        (x, y), reach_m = line.centroid.coords[0], line.length / 2 + MIN_SINGLE_M
+        free = line.difference(tiles.around(x, y, reach_m)) if is_near else line
         for part in shapely.get_parts(free):
             if part.length > min(MIN_SINGLE_M, line.length / 2):
                 (x0, y0), *_, (x1, y1) = part.coords

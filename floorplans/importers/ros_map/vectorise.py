@@ -253,8 +253,8 @@ def _fitted(net: _Net, directions: Floats) -> Floats:
     weight = np.sqrt(np.maximum(np.hypot(*net.steps.T), 1.0))[:, None]
     middle = np.array(
         [
-            pixels.mean(axis=0) if len(pixels) else net.corners[line].mean(axis=0)
-            for pixels, line in zip(net.pixels, net.lines, strict=True)
+            _middle(net.corners[line], pixels, width)
+            for pixels, line, width in zip(net.pixels, net.lines, net.width, strict=True)
         ]
     )
     rows = np.arange(m)[:, None]
@@ -274,6 +274,17 @@ def _fitted(net: _Net, directions: Floats) -> Floats:
     right = np.concatenate([np.zeros(m), wanted, _STAY * net.corners.ravel()])
     matrix = coo_array((value, (row, column)), shape=(2 * m + 2 * n, 2 * n)).tocsr()
     return lsqr(matrix, right, atol=1e-12, btol=1e-12, x0=net.corners.ravel())[0].reshape(-1, 2)
+
+
+def _middle(ends: Floats, pixels: Floats, width: float) -> Floats:
+    """Mean of a line's pixels, without those in its corners, which are also other walls'."""
+    if not len(pixels):
+        return ends.mean(axis=0)
+    step = ends[1] - ends[0]
+    length = float(np.hypot(*step))
+    s = (pixels - ends[0]) @ step / max(length, 1.0)
+    inner = pixels[(s > width) & (s < length - width)]
+    return inner.mean(axis=0) if len(inner) >= _FEW_PIXELS else pixels.mean(axis=0)
 
 
 def _extended_to_pixel_ends(net: _Net, corners: Floats) -> Floats:

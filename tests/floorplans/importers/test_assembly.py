@@ -13,7 +13,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity
-from shapely.geometry import Point, Polygon, box
+from shapely.geometry import LineString, Point, Polygon, box
 
 import floorplans
 from floorplans import PlanError
@@ -124,6 +124,21 @@ def test_walls_that_enclose_nothing_are_a_draft_with_gaps():
         made(Draft("x", ()))
     with pytest.raises(PlanError, match="all lie on one line"):
         made(Draft("x", (RawWall((0, 0), (30, 0)),)))
+
+
+@pytest.mark.parametrize("turn", range(4))
+def test_a_building_that_lacks_two_sides_is_closed_on_request_with_all_its_walls(turn: int):
+    front = [(0.0, 5.0), (7.5, 10.0), (12.5, 17.5)]
+    lines = [LineString([(a, 0), (b, 0)]) for a, b in front] + [LineString([(17.5, 0), (17.5, 13)])]
+    turned = [affinity.rotate(line, 90 * turn, origin=(0, 0)).coords for line in lines]
+    draft = Draft("x", tuple(RawWall((a[0], a[1]), (b[0], b[1]), 0.2) for a, b in turned))
+    width_m = float(np.hypot(17.5, 13))
+    with pytest.raises(UnusablePlanError, match=rf"open: {width_m:.2f} m from") as caught:
+        made(draft)
+    assert caught.value.draft.plan.outline.area == pytest.approx(17.5 * 13 / 2)
+    closed = made(draft, close_gaps_m=width_m + 0.1)
+    assert closed.plan.outline.area == pytest.approx(17.5 * 13 / 2)
+    assert not closed.warnings
 
 
 def test_gaps_wider_than_asked_for_stay_open_even_around_a_closed_room():
@@ -384,6 +399,35 @@ def test_a_line_without_a_partner_stays_single():
     assert [area.area for area in walls.area] == pytest.approx([0.3])
     lengths = sorted(np.abs(walls.singles[:, 1, 0] - walls.singles[:, 0, 0]).tolist())
     assert lengths == pytest.approx([2, 5], abs=0.2)
+
+
+def _rectangle(x0: float, y0: float, x1: float, y1: float) -> list[list[tuple[float, float]]]:
+    corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)]
+    return [list(side) for side in pairwise(corners)]
+
+
+@pytest.mark.parametrize("thickness_m", [0.65, 0.8, 1.0, 1.5])
+def test_faces_far_apart_are_a_heavy_wall_where_walls_are_drawn_by_both_faces(thickness_m: float):
+    t = thickness_m
+    rings = _rectangle(0, 0, 24, 18) + _rectangle(t, t, 24 - t, 18 - t)
+    partition = [[(x, t), (x, 18 - t)] for x in (10.0, 10.2)]
+    walls = strips_of_lines(np.array(rings + partition), 0.6, 2.5)
+    assert len(walls.singles) == 0
+    masonry = box(0, 0, 24, 18).difference(box(t, t, 24 - t, 18 - t))
+    area = shapely.union_all([*walls.area, box(0, 0, t, t)]).buffer(0.01)
+    assert area.buffer(0.1).covers(masonry | box(10, t, 10.2, 18 - t))
+    assert area.area == pytest.approx(masonry.area + 0.2 * (18 - 2 * t), rel=0.05)
+
+
+@pytest.mark.parametrize("width_m", [0.7, 0.9])
+def test_a_narrow_room_is_no_heavy_wall(width_m: float):
+    single = _rectangle(0, 0, 14, 10) + [[(x, 0), (x, 10)] for x in (6, 6 + width_m, 11)]
+    assert not strips_of_lines(np.array(single, dtype=np.float64), 0.6, 2.5).area
+    sides = (6.0, 6.1, 6.1 + width_m, 6.2 + width_m)
+    double = _rectangle(0, 0, 14, 10) + _rectangle(0.3, 0.3, 13.7, 9.7)
+    double += [[(x, 0.3), (x, 9.7)] for x in sides]
+    area = shapely.union_all(list(strips_of_lines(np.array(double), 0.6, 2.5).area))
+    assert not area.intersects(Point(6.1 + width_m / 2, 5))
 
 
 def test_faces_set_off_from_each_other_are_filled_as_deep_as_they_are():

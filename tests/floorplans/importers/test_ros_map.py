@@ -283,6 +283,18 @@ def hall(n_x=280, n_y=240):
     return walls, ROOM, (n_x, n_y)
 
 
+@pytest.mark.parametrize("transposed", [False, True])
+def test_walls_of_the_pixels_of_one_line_are_in_one_line(transposed: bool) -> None:
+    solid = np.zeros((220, 340), dtype=np.bool_)
+    solid[[10, 210], 10:311] = solid[10:211, [[10], [310]]] = True
+    solid[10, 90:200] = False
+    walls = walls_of_picture(solid.T if transposed else solid, 1.5)
+    ends = np.array([(wall.start, wall.end) for wall in walls]).reshape(-1, 2)
+    for coordinate, sides in zip(ends.T[:: -1 if transposed else 1], (310, 210), strict=True):
+        off = np.abs(coordinate[:, None] - 0.5 - [10, sides, 90, 200]).min(axis=1)
+        assert np.minimum(off, np.abs(off - 0.5)).max() < 1e-4
+
+
 @pytest.mark.parametrize("width_m", [1.5, 4.0, 8.0])
 def test_the_border_of_known_space_closes_a_bay_door_and_the_report_lists_it(
     width_m: float, tmp_path
