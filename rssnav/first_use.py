@@ -20,26 +20,31 @@ from rssnav.kernel_cache import tracer_cache
 from rssnav.presets import PRESETS, PresetName
 from rssnav.scenes import scene_of
 
-TWO_ROOMS = """
-name = "two rooms"
+BOX = """
+name = "box of 6 m x 4 m"
 format = 1
 height_m = 3
 floor_material = "concrete"
 ceiling_material = "concrete"
 source = [1.2, 1.3, 1.5]
+start = [5.5, 2.5]
 outline = [[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]]
 
 [[walls]]
 points = [[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]]
 material = "concrete"
 thickness_m = 0.2
+"""
+"""A plan of one room."""
 
+PARTITION = """
 [[walls]]
 points = [[3, 0], [3, 4]]
 material = "concrete"
 thickness_m = 0.1
 openings = [{ kind = "passage", offset_m = 1, width_m = 1, head_m = HEAD }]
 """
+"""A wall that makes two rooms of it."""
 
 POLL_S = 0.05
 
@@ -96,7 +101,7 @@ def _trace_horizontal_edges(preset: PresetName) -> None:
 
 def _two_rooms(preset: PresetName, head_m: float) -> tuple[Scene, Transmitter, TraceConfig]:
     """Return two rooms with a passage, whose head is a horizontal edge unless it is the ceiling."""
-    plan = floorplans.loads(TWO_ROOMS.replace("HEAD", str(head_m)))
+    plan = floorplans.loads(BOX + PARTITION.replace("HEAD", str(head_m)))
     chosen = PRESETS[preset]
     transmitter = Transmitter(plan.require_source(), antenna=chosen.antenna)
     return scene_of(plan), transmitter, replace(chosen.config, max_reflections=1)

@@ -19,28 +19,13 @@ from rssnav import GridWorld, LocationAgent, RssAgent, ToleranceStates, train
 from rssnav.cli.console import print_json, print_pairs, stage_progress
 from rssnav.cli.failures import EXIT_FAILURE, print_error
 from rssnav.cli.options import Json, examples
-from rssnav.first_use import compile_kernels
+from rssnav.first_use import BOX, compile_kernels
 from rssnav.kernel_cache import CacheState, learning_cache, tracer_cache
 from rssnav.maps import make_map
 from rssnav.presets import PRESETS
 from rssnav.scenes import scene_of
 
 LIBRARIES = ("numpy", "numba", "scipy", "shapely", "trimesh", "h5py", "matplotlib", "typer")
-BOX = """
-name = "box of 6 m x 4 m"
-format = 1
-height_m = 3
-floor_material = "concrete"
-ceiling_material = "concrete"
-source = [1.2, 1.3, 1.5]
-start = [5.5, 2.5]
-outline = [[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]]
-
-[[walls]]
-points = [[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]]
-material = "concrete"
-thickness_m = 0.2
-"""
 
 
 def add_to(parent: typer.Typer) -> None:

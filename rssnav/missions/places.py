@@ -96,8 +96,44 @@ def mission_of_places(
     config, receive_antenna, threads, progress
         As for `rssnav.maps.make_map`. The transmitter has the same antenna as the receivers.
     """
-    antenna = receive_antenna or HalfWaveDipole()
     layout = reachable_layout(plan, speed)
+    rss_dbm = fields_of_places(
+        plan,
+        layout,
+        places,
+        config=config,
+        antenna=receive_antenna or HalfWaveDipole(),
+        threads=threads,
+        progress=progress,
+    )
+    return mission_of_fields(plan, (layout,), rss_dbm, places, modes)
+
+
+def fields_of_places(
+    plan: FloorPlan,
+    layout: Layout,
+    places: Sequence[tuple[float, float, float]],
+    *,
+    config: TraceConfig | None,
+    antenna: Antenna,
+    threads: int | None,
+    progress: Progress | None,
+) -> NDArray[np.float64]:
+    """RSS of each cell for a transmitter at each place, shape (M, S) [dBm].
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        Walls and materials.
+    layout : Layout
+        Its S cells.
+    places : sequence of (float, float, float)
+        M places [m].
+    antenna : Antenna
+        At both ends.
+    config, threads, progress
+        As for `rssnav.maps.make_map`.
+    """
     senders = {
         f"{k}": Transmitter(position=place, antenna=antenna) for k, place in enumerate(places)
     }
@@ -109,8 +145,7 @@ def mission_of_places(
         threads=threads,
         progress=progress,
     )
-    rss_dbm = np.stack([layout.on_cells(maps[name].rss_dbm) for name in senders])
-    return mission_of_fields(plan, (layout,), rss_dbm, places, modes)
+    return np.stack([layout.on_cells(maps[name].rss_dbm) for name in senders])
 
 
 def mission_of_fields(

@@ -10,13 +10,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from floorplans import FloorPlan
-from raytrace import Antenna, Isotropic, TraceConfig, Transmitter
-from rssnav.discrete_states import heard
+from raytrace import Antenna, Isotropic, TraceConfig
 from rssnav.missions.layout import Layout
 from rssnav.missions.mission import Mission
+from rssnav.missions.places import fields_of_places
 from rssnav.missions.task import Task
 from rssnav.progress import Progress
-from rssnav.transmitter_maps import make_transmitter_maps
 
 COARSE = TraceConfig(max_reflections=2, max_diffractions=0, max_transmissions=8)
 """Limits of the maps of hypotheses: a tenth of the time of the preset `building`, and errors of
@@ -113,20 +112,16 @@ class Hypotheses:
             As for `rssnav.maps.make_map`.
         """
         position = layout.position[_dominating(layout)] + _BESIDE_M
-        antenna = antenna or Isotropic(polarisation="mean")
-        senders = {
-            f"{k}": Transmitter(position=(x, y, height_m), antenna=antenna)
-            for k, (x, y) in enumerate(position.tolist())
-        }
-        maps = make_transmitter_maps(
+        fields_dbm = fields_of_places(
             plan,
-            senders,
+            layout,
+            [(x, y, height_m) for x, y in position.tolist()],
             config=config,
-            receive_antenna=antenna,
+            antenna=antenna or Isotropic(polarisation="mean"),
             threads=threads,
             progress=progress,
         )
-        rss_dbm = np.column_stack([layout.on_cells(maps[name].rss_dbm) for name in senders])
+        rss_dbm = np.ascontiguousarray(fields_dbm.T)
         found = (rss_dbm > level_dbm) | (rss_dbm == rss_dbm.max(axis=0))
         return cls(layout, rss_dbm, found, position)
 
@@ -156,8 +151,3 @@ def _hops(layout: Layout, found: NDArray[np.bool_]) -> NDArray[np.int32]:
         steps = dijkstra(back, indices=np.flatnonzero(found[:, h]), unweighted=True, min_only=True)
         hops[:, h] = np.where(np.isfinite(steps), steps, NO_WAY)
     return hops
-
-
-def heard_by(hypotheses: Hypotheses, sensitivity_dbm: float) -> NDArray[np.float64]:
-    """Readings (S, H) that the maps would give a receiver of some sensitivity [dBm]."""
-    return heard(hypotheses.rss_dbm, sensitivity_dbm)

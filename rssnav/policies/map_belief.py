@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
 from rssnav.arguments import require
-from rssnav.discrete_states import AGENT_SENSITIVITY_DBM
+from rssnav.discrete_states import AGENT_SENSITIVITY_DBM, heard
 from rssnav.kernels.grid_search import expected_cost
 from rssnav.missions.policy import Seen
-from rssnav.policies.hypotheses import Hypotheses, heard_by
+from rssnav.policies.hypotheses import Hypotheses
 from rssnav.policies.step_memory import StepMemory, any_step
 
 MISSED = float(np.log(0.02))
@@ -73,7 +73,7 @@ class MapBelief:
 
     def __init__(self, hypotheses: Hypotheses, likelihood: Likelihood) -> None:
         self.hypotheses, self.likelihood = hypotheses, likelihood
-        self.expected_dbm = heard_by(hypotheses, likelihood.sensitivity_dbm)
+        self.expected_dbm = heard(hypotheses.rss_dbm, likelihood.sensitivity_dbm)
         self.begin()
 
     def begin(self) -> None:

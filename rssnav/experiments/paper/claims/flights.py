@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.discrete_states import AGENT_SENSITIVITY_DBM
+from rssnav.discrete_states import AGENT_SENSITIVITY_DBM, heard
 from rssnav.experiments.paper.claims.comparing import PerRun, agents_alike, agents_differ, place
 from rssnav.experiments.paper.claims.verdicts import Case, Claim, between, case, undecided
 from rssnav.experiments.paper.counting import COMPARED_COUNTS, Count, counted_lengths_m
@@ -42,7 +42,7 @@ _CLOSE = max(
 
 def mean_rss_dbm(world: GridWorld, several: Flights) -> NDArray[np.float64]:
     """Mean RSS [dBm] over the cells of each flight (n,), as an agent reads it: never -inf."""
-    read_dbm = np.maximum(world.rss_dbm, AGENT_SENSITIVITY_DBM)
+    read_dbm = heard(world.rss_dbm, AGENT_SENSITIVITY_DBM)
     return np.array([read_dbm[flight].mean() for flight in several])
 
 
