@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raytrace.compilation import Compilation, watched_compilation
-from raytrace.kernels.compiling import jit
+from raytrace.kernels.compiling import widen_integers
 
 
 def fresh_pair():
@@ -41,16 +41,14 @@ def test_an_end_without_a_start_is_not_counted() -> None:
     assert (compilation.n_compiled, compilation.seconds) == (0, 0.0)
 
 
-@jit(inner=True)
-def next_of(values, i, step):
-    return values[i + step]
-
-
-@jit()
-def some_of(values, numbers):
-    return next_of(values, 0, 1) + next_of(values, numbers[0], 0) + next_of(values, len(values), -2)
-
-
 def test_a_kernel_is_compiled_once_for_all_whole_numbers() -> None:
+    next_of = numba.njit(lambda values, i, step: values[i + step])  # not kept from an earlier run
+    widen_integers(next_of)
+
+    @numba.njit
+    def some_of(values, numbers):
+        constants = next_of(values, 0, 1) + next_of(values, len(values), -2)
+        return constants + next_of(values, numbers[0], 0)
+
     assert some_of(np.array([1.0, 20.0, 300.0]), np.array([2], np.int32)) == 340.0
     assert len(next_of.signatures) == 1
