@@ -1,4 +1,4 @@
-"""Location of points in the plan view, and the bounces a path needs to meet each edge."""
+"""Location of points in the plan view."""
 
 import numpy as np
 
@@ -77,41 +77,3 @@ def targets_in(view: PlanView, xy: Floats, wanted: Bools) -> Targets:
     number = places[kept, 0]
     x, y = (np.append(column[number], np.zeros(WIDTH)) for column in xy.T)
     return Targets(np.concatenate([[0], np.cumsum(per_cell)]), number, weight[kept], x, y)
-
-
-def bounces_needed(
-    view: PlanView, z_low: float, z_high: float, through_walls: bool = False
-) -> Ints:
-    """Floor or ceiling reflections that a path between two heights needs at each edge.
-
-    Parameters
-    ----------
-    view
-        The plan view.
-    z_low, z_high
-        Lowest and highest of the heights at which paths begin, end and are diffracted [m].
-    through_walls
-        Whether paths may pass where there is no opening.
-
-    Returns
-    -------
-    ndarray
-        (n_edges, 2): 1 where the band between the heights has no opening to pass, and where it
-        has no wall to be reflected by; otherwise 0.
-    """
-    if z_high - z_low < 2e-6:
-        z_low, z_high = z_low - 1e-6, z_high + 1e-6
-    open_between = np.zeros(len(view.profile_intervals) - 1, bool)
-    wall_between = np.zeros_like(open_between)
-    for p in range(len(open_between)):
-        bottom = 0.0
-        for k in range(view.profile_intervals[p], view.profile_intervals[p + 1]):
-            overlaps = min(view.interval_top[k], z_high) - max(bottom, z_low) > 1e-9
-            (open_between if view.interval_slab[k] < 0 else wall_between)[p] |= overlaps
-            bottom = view.interval_top[k]
-    needed = np.zeros((len(view.profile), 2), np.int64)
-    on_wall = view.profile >= 0
-    if not through_walls:
-        needed[on_wall, 0] = ~open_between[view.profile[on_wall]]
-    needed[on_wall, 1] = ~wall_between[view.profile[on_wall]]
-    return needed

@@ -24,19 +24,22 @@ from raytrace.kernels.losses import (
 )
 from raytrace.kernels.plan_view import GRAZING_M, PlanView, cross, mirrored
 from raytrace.kernels.rows import copy_row, enlarged, resized
+from raytrace.kernels.turns import Heights, Turns, turns_at, turns_needed
 
-PARENT, EDGE, REFLECTED, CELL, ORDER, TRANSMITTED, BOUNCES, INTERACTIONS = range(8)
+PARENT, EDGE, REFLECTED, CELL, ORDER, TRANSMITTED, INTERACTIONS, TURNS_UP, TURNS_DOWN = range(9)
 """Columns of `Tree.link`: the beam it split from; the edge it came through or was mirrored at,
 -1 at the root; whether it was mirrored; the cell it is in; wall reflections so far; solid walls
-gone through; floor or ceiling reflections that its heights require; reflections, solid walls gone
-through and partial walls with openings so far."""
+gone through; reflections, solid walls gone through and partial walls with openings so far; and the
+numbers of turns in `turns.Turns`."""
 
-IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y, FRACTION, AXIS_X, AXIS_Y = range(9)
+IMAGE_X, IMAGE_Y, RIGHT_X, RIGHT_Y, LEFT_X, LEFT_Y, FRACTION, AXIS_X, AXIS_Y, Z_UP, Z_DOWN = range(
+    11
+)
 """Columns of `Tree.beam`: the root's image, and the corners of the window [m]. Where there is a
 limit by loss: the largest fraction of the power that the walls on the way leave, and the image of
-the direction of a vertical edge's o-face."""
+the direction of a vertical edge's o-face. The heights in `turns.Turns` [m]."""
 
-BEAM_BYTES = 8 * 4 + 9 * 8
+BEAM_BYTES = 9 * 4 + 11 * 8
 """Size of a row of `Tree`."""
 
 Window = tuple[float, float, float, float]
@@ -44,7 +47,7 @@ Window = tuple[float, float, float, float]
 
 
 class Tree(NamedTuple):
-    """Beams, each behind its parent: `link` (n, 8) int32 and `beam` (n, 9)."""
+    """Beams, each behind its parent: `link` (n, 9) int32 and `beam` (n, 11)."""
 
     link: Int32s
     beam: Floats
@@ -52,12 +55,12 @@ class Tree(NamedTuple):
 
 def no_tree() -> Tree:
     """Return a tree without beams."""
-    return Tree(np.empty((0, 8), np.int32), np.empty((0, 9)))
+    return Tree(np.empty((0, 9), np.int32), np.empty((0, 11)))
 
 
 def grow_tree(
     view: PlanView,
-    bounces: Ints,
+    heights: Heights,
     root: tuple[float, float],
     root_cells: Ints,
     limits: Limits,
@@ -69,9 +72,8 @@ def grow_tree(
     ----------
     view
         The plan view.
-    bounces
-        (n_edges, 2) floor or ceiling reflections required to pass an edge, and to be reflected at
-        it.
+    heights
+        At which paths begin and end.
     root
         The point [m].
     root_cells
@@ -87,22 +89,22 @@ def grow_tree(
         The beams; a bound on the power of all paths within those that are too weak to be grown;
         and whether these are all beams; otherwise there are none.
     """
-    arrays = grow_tree_arrays(view, bounces, root, root_cells, limits, guard)
+    arrays = grow_tree_arrays(view, heights, root, root_cells, limits, guard)
     return Tree(*arrays[:2]), *arrays[2:]
 
 
 @jit()
 def grow_tree_arrays(
     view: PlanView,
-    bounces: Ints,
+    heights: Heights,
     root: tuple[float, float],
     root_cells: Ints,
     limits: Limits,
     guard: Guard,
 ) -> tuple[Int32s, Floats, float, bool]:
     """Arrays of `grow_tree`."""
-    link = np.zeros((256 + len(root_cells), 8), np.int32)
-    beam, left_out = np.zeros((256 + len(root_cells), 9)), np.zeros(1)
+    link = np.zeros((256 + len(root_cells), 9), np.int32)
+    beam, left_out = np.zeros((256 + len(root_cells), 11)), np.zeros(1)
     n = i = int(np.int64(0))  # a literal would be compiled as a type of its own
     for cell in root_cells:
         link[n, PARENT] = link[n, EDGE] = -1
@@ -110,6 +112,7 @@ def grow_tree_arrays(
         beam[n, IMAGE_X], beam[n, IMAGE_Y] = root
         beam[n, FRACTION] = 1.0
         beam[n, AXIS_X], beam[n, AXIS_Y] = limits.loss.edge_ways.axis
+        beam[n, Z_UP] = beam[n, Z_DOWN] = heights.start
         n += 1
     while i < n and not is_stopped(guard):
         needed = n + most_children(view, link[i, CELL])
@@ -117,7 +120,7 @@ def grow_tree_arrays(
             break
         while needed > len(link):
             link, beam = enlarged(link), enlarged(beam)
-        n = split(view, bounces, (link, beam), i, n, limits, left_out)
+        n = split(view, heights, (link, beam), i, n, limits, left_out)
         i += 1
     is_whole = i == n
     n = n if is_whole else 0
@@ -149,7 +152,7 @@ def may_enter(link: Int32s, i: int, cell: int) -> bool:
 @jit(inner=True)
 def split(
     view: PlanView,
-    bounces: Ints,
+    heights: Heights,
     rows: tuple[Int32s, Floats],
     i: int,
     n: int,
@@ -162,15 +165,16 @@ def split(
     """
     link, beam = rows
     cell, order, fraction = link[i, CELL], int(link[i, ORDER]), beam[i, FRACTION]
+    turns = turns_of(link[i], beam[i, Z_UP], beam[i, Z_DOWN])
     for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
         meets, window = narrowed(view, link[i, EDGE], beam[i], e)
         if not meets:
             continue
         met = incidence_of(view, beam[i], e, window, limits)
         leaves = directions_of(beam[i], order, window, limits)
-        required = max(link[i, BOUNCES], bounces[e, 0])
+        passed = turns if limits.max_transmissions > 0 else turns_at(view, e, False, turns)
         if (
-            order + required <= limits.max_reflections
+            order + turns_needed(passed, heights) <= limits.max_reflections
             and may_enter(link, i, view.beyond[e])
             and is_strong(
                 limits, order, int(view.twin[e]), (fraction, met.nearest), leaves, left_out
@@ -178,21 +182,35 @@ def split(
         ):
             pass_beam(view, link, beam, i, n, e, window)
             link[n, CELL] = view.beyond[e]
-            link[n, BOUNCES] = required
+            write_turns(link, beam, n, passed)
             n += 1
         if link[i, TRANSMITTED] < limits.max_transmissions:
             kept = fraction * largest_fraction(limits, view, e, IS_TRANSMITTED, met, order)
             loss = limits, (kept, met.nearest), leaves, left_out
             n = transmit_beam(view, link, beam, i, n, e, window, loss)
-        required = max(link[i, BOUNCES], bounces[e, 1])
-        if view.profile[e] >= 0 and order + 1 + required <= limits.max_reflections:
+        if view.profile[e] < 0:
+            continue
+        turned = turns_at(view, e, True, turns)
+        if order + 1 + turns_needed(turned, heights) <= limits.max_reflections:
             kept = fraction * largest_fraction(limits, view, e, IS_MIRRORED, met, order)
             if is_strong(limits, order + 1, e, (kept, met.nearest), leaves, left_out):
                 reflect_beam(view, link, beam, i, n, e, window)
-                link[n, BOUNCES] = required
+                write_turns(link, beam, n, turned)
                 beam[n, FRACTION] = kept
                 n += 1
     return n
+
+
+@jit(inline=True)
+def turns_of(link: Int32s, z_up: float, z_down: float) -> Turns:
+    """Turns of a beam, whose heights lie elsewhere."""
+    return int(link[TURNS_UP]), z_up, int(link[TURNS_DOWN]), z_down
+
+
+@jit(inline=True)
+def write_turns(link: Int32s, beam: Floats, n: int, turns: Turns) -> None:
+    """Write the turns of beam n."""
+    link[n, TURNS_UP], beam[n, Z_UP], link[n, TURNS_DOWN], beam[n, Z_DOWN] = turns
 
 
 @jit(inline=True)
@@ -290,7 +308,7 @@ def pass_beam(
     link_child(view, link, i, n, e, False)
     beam[n, IMAGE_X], beam[n, IMAGE_Y] = beam[i, IMAGE_X], beam[i, IMAGE_Y]
     beam[n, RIGHT_X], beam[n, RIGHT_Y], beam[n, LEFT_X], beam[n, LEFT_Y] = window
-    for k in (FRACTION, AXIS_X, AXIS_Y):
+    for k in (FRACTION, AXIS_X, AXIS_Y, Z_UP, Z_DOWN):
         beam[n, k] = beam[i, k]
 
 

@@ -12,16 +12,18 @@ import numpy as np
 
 from raytrace.arrays import Floats, Int32s, Ints
 from raytrace.kernels.beams import (
-    BOUNCES,
     CELL,
     EDGE,
     ORDER,
     PARENT,
     TRANSMITTED,
+    TURNS_DOWN,
+    TURNS_UP,
     Window,
     link_child,
     may_enter,
     most_children,
+    turns_of,
 )
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.guard import Guard, is_stopped, may_hold
@@ -40,6 +42,7 @@ from raytrace.kernels.losses import (
 )
 from raytrace.kernels.plan_view import PlanView
 from raytrace.kernels.rows import copy_row, enlarged, resized
+from raytrace.kernels.turns import Heights, turns_at, turns_from_edge, turns_needed
 
 STEEPEST = 1e5
 """Largest |m| of a ray that leaves a horizontal edge."""
@@ -47,8 +50,8 @@ STEEPEST = 1e5
 SLIVER_M = 1e-10
 """Narrowest interval of an edge that is traced [m]."""
 
-FRACTION = 7
-"""Column of `StripTree.frame`."""
+FRACTION, Z_UP, Z_DOWN = 7, 8, 9
+"""Columns of `StripTree.frame`."""
 
 
 class StripTree(NamedTuple):
@@ -57,10 +60,11 @@ class StripTree(NamedTuple):
     Attributes
     ----------
     link
-        (n, 8) int32, as in `beams.Tree`.
+        (n, 9) int32, as in `beams.Tree`.
     frame
-        (n, 8) x = f[0] X + f[1] Y + f[2] and h = f[3] X + f[4] Y + f[5] of a point of the beam's
-        cell; f[6] is -1 where the frame is mirrored, else 1; f[7] as `beams.FRACTION`.
+        (n, 10) x = f[0] X + f[1] Y + f[2] and h = f[3] X + f[4] Y + f[5] of a point of the beam's
+        cell; f[6] is -1 where the frame is mirrored, else 1; f[7] as `beams.FRACTION`; f[8] and
+        f[9] the heights in `turns.Turns` [m].
     first
         (n + 1,) corners of beam i's polygon are rays[first[i]:first[i + 1]].
     rays
@@ -73,13 +77,13 @@ class StripTree(NamedTuple):
     rays: Floats
 
 
-STRIP_BYTES, RAY_BYTES = 8 * 4 + 8 * 8 + 8, 2 * 8
+STRIP_BYTES, RAY_BYTES = 9 * 4 + 10 * 8 + 8, 2 * 8
 """Sizes of a beam without its corners, and of a corner."""
 
 
 def no_strips() -> StripTree:
     """Return a tree without beams."""
-    link, frame, rays = np.empty((0, 8), np.int32), np.empty((0, 8)), np.empty((0, 2))
+    link, frame, rays = np.empty((0, 9), np.int32), np.empty((0, 10)), np.empty((0, 2))
     return StripTree(link, frame, np.zeros(1, np.int64), rays)
 
 
@@ -278,7 +282,7 @@ def incidence_of_strip(
 @jit(inner=True)
 def split_strip(
     view: PlanView,
-    bounces: Ints,
+    heights: Heights,
     tree: StripTree,
     i: int,
     n: int,
@@ -292,6 +296,7 @@ def split_strip(
     work, out, left_out = scratch
     link, frame = tree.link, tree.frame[i]
     cell, order = link[i, CELL], int(link[i, ORDER])
+    before = turns_of(link[i], frame[Z_UP], frame[Z_DOWN])
     for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
         if view.line[e] == view.line[link[i, EDGE]]:
             continue
@@ -301,16 +306,21 @@ def split_strip(
         slopes = slopes_of(out, corners)
         met = incidence_of_strip(view, frame, e, slopes, limits)
         for how in (PASSES, IS_MIRRORED):
-            required = max(link[i, BOUNCES], bounces[e, how])
             possible = may_enter(link, i, view.beyond[e]) if how == 0 else view.profile[e] >= 0
-            if not possible or order + how + required > limits.max_reflections:
+            if not possible:
+                continue
+            turns = before
+            if how == IS_MIRRORED or limits.max_transmissions == 0:
+                turns = turns_at(view, e, how == IS_MIRRORED, before)
+            if order + how + turns_needed(turns, heights) > limits.max_reflections:
                 continue
             kept = frame[FRACTION] * largest_fraction(limits, view, e, how, met, order)
             into = int(view.twin[e]) if how == PASSES else e
             distance = met.nearest
             if has_strong_way(limits, order + how, into, (kept, distance), slopes, left_out):
                 add_child(view, tree, (i, n, e), how, corners, out, kept)
-                link[n, BOUNCES] = required
+                link[n, TURNS_UP], tree.frame[n, Z_UP] = turns[0], turns[1]
+                link[n, TURNS_DOWN], tree.frame[n, Z_DOWN] = turns[2], turns[3]
                 n += 1
         if link[i, TRANSMITTED] < limits.max_transmissions:
             kept = frame[FRACTION] * largest_fraction(limits, view, e, IS_TRANSMITTED, met, order)
@@ -348,13 +358,13 @@ def transmit_strip(
 
 
 def grow_strips(
-    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: Limits, guard: Guard
+    view: PlanView, heights: Heights, root: int, root_cell: int, limits: Limits, guard: Guard
 ) -> tuple[StripTree, float, bool]:
     """Grow all beams from one side of an edge.
 
     Parameters
     ----------
-    view, bounces
+    view, heights
         As for `beams.grow_tree`.
     root, root_cell
         The edge, as seen from the cell that the beams go into.
@@ -366,17 +376,17 @@ def grow_strips(
     strips, left_out, is_whole
         As from `beams.grow_tree`.
     """
-    arrays = grow_strip_arrays(view, bounces, root, root_cell, limits, guard)
+    arrays = grow_strip_arrays(view, heights, root, root_cell, limits, guard)
     return StripTree(*arrays[:4]), *arrays[4:]
 
 
 @jit()
 def grow_strip_arrays(
-    view: PlanView, bounces: Ints, root: int, root_cell: int, limits: Limits, guard: Guard
+    view: PlanView, heights: Heights, root: int, root_cell: int, limits: Limits, guard: Guard
 ) -> tuple[Int32s, Floats, Ints, Floats, float, bool]:
     """Arrays of `grow_strips`."""
-    link = np.zeros((256, 8), np.int32)
-    frame, left_out = np.empty((256, 8)), np.zeros(1)
+    link = np.zeros((256, 9), np.int32)
+    frame, left_out = np.empty((256, 10)), np.zeros(1)
     first = np.zeros((257, 1), np.int64)
     rays = np.empty((4096, 2))
     work, out = np.empty((256, 2)), np.empty((256, 2))
@@ -384,6 +394,7 @@ def grow_strip_arrays(
     root_frame = edge_frame(view, root)
     for k in range(len(root_frame)):
         frame[0, k] = root_frame[k]
+    _, frame[0, Z_UP], _, frame[0, Z_DOWN] = turns_from_edge(heights)
     length, _ = in_frame(frame[0], view.ends[root, 2], view.ends[root, 3])
     write_box(rays, length)
     first[1, 0] = 4
@@ -404,7 +415,7 @@ def grow_strip_arrays(
         while corners > len(out):
             work, out = enlarged(work), enlarged(out)
         tree = StripTree(link, frame, first[:, 0], rays)
-        n = split_strip(view, bounces, tree, i, n, limits, (work, out, left_out))
+        n = split_strip(view, heights, tree, i, n, limits, (work, out, left_out))
         i += 1
     is_whole = i == n
     n = n if is_whole else 0

@@ -140,7 +140,7 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
             root = (self._edge.x, self._edge.y)
             guard = taking(t.guard, nbytes(legs), LEGS)
             tree, behind, is_whole = grow_tree(
-                t.scene.view, t.bounces, root, self._cells, limits, guard
+                t.scene.view, t.heights, root, self._cells, limits, guard
             )
             check_whole(guard, is_whole, BEAMS)
             left_out += behind
@@ -254,7 +254,8 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
             cell = int(np.searchsorted(view.cell_edges, self._near, side="right")) - 1
             limits = limits_from_edge(self._arrivals(images), t.limits, self._counts)
             guard = taking(t.guard, nbytes(images), LEGS)
-            strips, behind, is_whole = grow_strips(view, t.bounces, self._near, cell, limits, guard)
+            heights = t.heights._replace(start=self._edge.z)
+            strips, behind, is_whole = grow_strips(view, heights, self._near, cell, limits, guard)
             check_whole(guard, is_whole, BEAMS)
             left_out += behind
         beams = HorizontalEdgeBeams(self._edge, t.tree, images, strips, no_hits(), np.empty((0, 4)))

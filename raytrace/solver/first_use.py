@@ -7,7 +7,6 @@ others together, so a second process can compile them meanwhile.
 import numpy as np
 
 from raytrace.config import TraceConfig
-from raytrace.geometry.point_location import bounces_needed
 from raytrace.kernels.beam_hits import Targets, no_hits
 from raytrace.kernels.beams import CELL, EDGE, FRACTION, IMAGE_X, IMAGE_Y, PARENT, Tree
 from raytrace.kernels.guard import no_guard
@@ -18,7 +17,7 @@ from raytrace.scene import Scene
 from raytrace.solver.evaluation import evaluation_of
 from raytrace.solver.extruded_classes import OverHorizontalEdge
 from raytrace.solver.loss_limits import continuations
-from raytrace.solver.setup import Tracing, limits_by_number, trace_geometry
+from raytrace.solver.setup import Tracing, heights_of, limits_by_number, trace_geometry
 
 
 def compile_horizontal_edges(
@@ -50,7 +49,7 @@ def _direct_rays(scene: Scene, transmitter: Transmitter, config: TraceConfig) ->
     near = edge.plan_edges[0]
     cell = int(np.searchsorted(view.cell_edges, near, side="right")) - 1
     x, y, z = transmitter.position
-    tree = Tree(np.zeros((1, 8), np.int32), np.zeros((1, 9)))
+    tree = Tree(np.zeros((1, 9), np.int32), np.zeros((1, 11)))
     tree.link[0, [PARENT, EDGE, CELL]] = -1, -1, cell
     tree.beam[0, [IMAGE_X, IMAGE_Y, FRACTION]] = x, y, 1.0
     in_cell = (np.arange(len(view.cell_edges)) > cell).astype(np.int64)
@@ -60,7 +59,7 @@ def _direct_rays(scene: Scene, transmitter: Transmitter, config: TraceConfig) ->
         config,
         geometry=trace_geometry(scene, (x, y, z), np.array([[x, y, z]]), config),
         targets=Targets(in_cell, np.zeros(1, np.int64), np.ones(1), *at_transmitter),
-        bounces=bounces_needed(view, min(z, edge.z), max(z, edge.z), config.max_transmissions != 0),
+        heights=heights_of(scene, z, np.array([[x, y, z]])),
         limits=limits_by_number(scene, config),
         tree=tree,
         left_out=0.0,

@@ -1,13 +1,14 @@
 """The beams from one transmitter to receivers in a scene, before any field is computed."""
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from raytrace.arrays import Floats, Int32s, Ints
+from raytrace.arrays import Bools, Floats, Int32s, Ints
 from raytrace.config import TraceConfig
 from raytrace.errors import SceneError
-from raytrace.geometry.point_location import bounces_needed, cells_around, targets_in, wall_around
+from raytrace.geometry.point_location import cells_around, targets_in, wall_around
 from raytrace.kernels.beam_hits import Hits, Targets, hit_corners, hit_partial_walls
 from raytrace.kernels.beams import Tree, grow_tree
 from raytrace.kernels.building import (
@@ -21,6 +22,7 @@ from raytrace.kernels.edge_losses import no_edge_ways
 from raytrace.kernels.guard import Guard, no_guard
 from raytrace.kernels.losses import COSINE_BINS, UNLIMITED, Limits, LossLimit
 from raytrace.kernels.plan_view import GRAZING_M
+from raytrace.kernels.turns import Heights
 from raytrace.scene import Scene
 from raytrace.solver.limits import check_whole, nbytes, taking
 
@@ -39,8 +41,8 @@ class Tracing:
         The same as the kernels take it.
     targets
         The receivers, cell by cell.
-    bounces
-        (n_edges, 2) see `point_location.bounces_needed`.
+    heights
+        Where paths begin and end.
     limits
         How far beams from the transmitter are grown.
     tree, left_out
@@ -64,7 +66,7 @@ class Tracing:
     config: TraceConfig
     geometry: TraceGeometry
     targets: Targets
-    bounces: Ints
+    heights: Heights
     limits: Limits
     tree: Tree
     left_out: float
@@ -115,23 +117,23 @@ def prepare(
     TraceStoppedError, MemoryLimitError
         Where the guard has ended a kernel.
     """
-    view, guard = scene.view, guard or no_guard()
+    guard = guard or no_guard()
     x, y, z = (float(coordinate) for coordinate in position)
     root = _cells_of_transmitter(scene, (x, y, z))
     geometry = trace_geometry(scene, (x, y, z), receivers, config)
-    band = [z, *np.unique(receivers[:, 2]), *(e.z for e in scene.horizontal_edges)]
-    bounces = bounces_needed(view, min(band), max(band), config.max_transmissions != 0)
+    heights = heights_of(scene, z, receivers)
     limits = limits or limits_by_number(scene, config)
     if config.max_transmissions is None and not limits.loss.is_active:
         raise ValueError("max_transmissions = None: expected limits by loss")
-    beams = _beams(scene, bounces, (x, y), root, limits, guard)
+    to_edges = heights.reaching(e.z for e in scene.horizontal_edges)
+    beams = _beams(scene, to_edges, (x, y), root, limits, guard)
     tree, left_out, corners, partial_walls, intervals = beams
     return Tracing(
         scene,
         config,
         geometry,
         _targets(scene, receivers),
-        bounces,
+        heights,
         limits,
         tree,
         left_out,
@@ -183,14 +185,24 @@ def with_receivers(tracing: Tracing, receivers: Floats) -> Tracing:
     )
 
 
+def heights_of(scene: Scene, z: float, receivers: Floats) -> Heights:
+    """Return where paths from a height [m] to receivers (n, 3) [m] begin and end."""
+    ends = np.unique(receivers[_between_floors(scene, receivers), 2])
+    return Heights(z, math.inf, -math.inf).reaching(ends.tolist())
+
+
+def _between_floors(scene: Scene, receivers: Floats) -> Bools:
+    return (receivers[:, 2] > 0.0) & (receivers[:, 2] < scene.height_m)
+
+
 def _targets(scene: Scene, receivers: Floats) -> Targets:
-    inside = (receivers[:, 2] > 0.0) & (receivers[:, 2] < scene.height_m)
+    inside = _between_floors(scene, receivers)
     return targets_in(scene.view, np.ascontiguousarray(receivers[:, :2]), inside)
 
 
 def _beams(
     scene: Scene,
-    bounces: Ints,
+    heights: Heights,
     root: tuple[float, float],
     root_cells: Ints,
     limits: Limits,
@@ -198,7 +210,7 @@ def _beams(
 ) -> tuple[Tree, float, Hits, Int32s, Floats]:
     """Grow the beams from a point; find the corners and partial walls within them."""
     view = scene.view
-    tree, left_out, is_whole = grow_tree(view, bounces, root, root_cells, limits, guard)
+    tree, left_out, is_whole = grow_tree(view, heights, root, root_cells, limits, guard)
     check_whole(guard, is_whole, BEAMS)
     guard = taking(guard, nbytes(tree), BEAMS)
     corners, is_whole = hit_corners(view, tree, guard)
