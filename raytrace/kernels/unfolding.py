@@ -96,6 +96,7 @@ def unfold(
     x, y = target
     px, py = image_of(images, i, IMAGE_X), image_of(images, i, IMAGE_Y)
     length = maximum(sqrt((x - px) * (x - px) + (y - py) * (y - py)), NEAREST_M)
+    ux, uy = (x - px) / length, (y - py) / length
     n = link[i, INTERACTIONS]
     rest, k = length, n
     while k > 0:
@@ -114,18 +115,16 @@ def unfold(
         x, y = px + t * (x - px), py + t * (y - py)
         rest = rest * t
         i = link[i, PARENT]
-        inv_length = 1.0 / rest
-        ux = (x - image_of(images, i, IMAGE_X)) * inv_length
-        uy = (y - image_of(images, i, IMAGE_Y)) * inv_length
         nx, ny = view.plane[e, 0], view.plane[e, 1]
+        normal = nx * ux + ny * uy
+        if not passed:  # the direction is mirrored, since the reflection may be at the root itself
+            ux, uy, normal = ux - 2.0 * normal * nx, uy - 2.0 * normal * ny, -normal
         store(leg.interactions[k, DISTANCE], rest)
         store(leg.interactions[k, SKEW], nx * uy - ny * ux)
-        store(leg.interactions[k, NORMAL], nx * ux + ny * uy)
+        store(leg.interactions[k, NORMAL], normal)
         store(leg.interactions[k, POINT_X], x)
         store(leg.interactions[k, POINT_Y], y)
         leg.types[k, TYPE], leg.types[k, SURFACE] = type_and_surface(view, e, passed)
-    ux = (x - image_of(images, i, IMAGE_X)) / rest
-    uy = (y - image_of(images, i, IMAGE_Y)) / rest
     return n, length, ux, uy
 
 

@@ -7,7 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 import floorplans
-from raytrace import HalfWaveDipole, Scene, TraceConfig, Transmitter
+from helpers.buildings import box, door, wall
+from raytrace import HalfWaveDipole, Scene, TraceConfig, Transmitter, trace_paths
 from raytrace.kernels.sums import Sums
 from raytrace.solver.accumulate import sum_paths
 from raytrace.solver.evaluation import evaluation_of
@@ -118,3 +119,19 @@ def test_a_map_moves_with_its_plan(case: Case, unmoved: Sums, move: str) -> None
 
 def test_some_rays_graze(unmoved: Sums) -> None:
     assert (unmoved.n_paths % 1.0 > 0.0).any()
+
+
+def test_a_reflection_at_the_end_of_a_lintel_is_the_limit_of_those_close_to_it() -> None:
+    """The reflection comes before the diffraction on one side, and behind it on the other."""
+    room = box(10.0, 5.0, *wall((4.0, 0.0), (4.0, 5.0), door(3.0, 5.0, head=2.5)))
+    y = 3.0 + np.array([-1e-4, 0.0, 1e-4])
+    receivers = np.column_stack([np.full(3, 8.0), y, np.full(3, 1.5)])
+    paths = trace_paths(room.scene, Transmitter((2.0, 4.0, 2.0)), receivers, TraceConfig(1, 1))
+    near_end = np.linalg.norm(paths.vertices[:, 1:3] - [4.0, 5.0, 2.5], axis=2) < 1e-3
+    at_end = paths.rows(near_end.all(axis=1))
+    before, exact, after = (at_end.rows(at_end.receiver == k) for k in range(3))
+    assert len(before.gain) == len(after.gain) == 1
+    np.testing.assert_array_equal(exact.weight, 0.5)
+    assert {tuple(row) for row in exact.interactions} == {(1, 2), (2, 1)}
+    limit = (before.gain + after.gain) / 2.0
+    np.testing.assert_allclose(exact.gain, [*limit, *limit], rtol=1e-5)
