@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from helpers.buildings import box, door, wall
 from numpy.typing import NDArray
 
 import floorplans
-from helpers.buildings import box, door, wall
 from raytrace import HalfWaveDipole, Scene, TraceConfig, Transmitter, trace_paths
 from raytrace.kernels.sums import Sums
 from raytrace.solver.accumulate import sum_paths
