@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +14,9 @@ from floorplans import FloorPlan
 from floorplans.checks.inspection import Finding
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M, cells_inside
+from rssnav.missions.layout import Layout
 from rssnav.optimal_flights import shortest_path
-from rssnav.world import GOAL_DISTANCE_M, GridWorld
+from rssnav.world import GOAL_DISTANCE_M, GridWorld, reached_from_start, speeds_that_can
 
 SPEEDS = (1, 2, 4)
 
@@ -51,22 +53,36 @@ def reach_by_speed(plan: FloorPlan, speeds: tuple[int, ...] = SPEEDS) -> tuple[R
     Raises
     ------
     WorldError
-        When the transmitter can be reached at none of the speeds.
+        When the start is not at the centre of a cell.
     """
     radio_map = _map_without_readings(plan)
-    found = tuple(_reach(plan, radio_map, speed) for speed in speeds)
-    if all(reach.steps is None for reach in found):
-        GridWorld.from_map(plan, radio_map, speeds[-1])  # raises and names speeds that can
-    return found
+    return tuple(_reach(plan, radio_map, speed) for speed in speeds)
 
 
 def _reach(plan: FloorPlan, radio_map: RadioMap, speed: int) -> Reach:
-    world = GridWorld.from_map(plan, radio_map, speed, goal_distance_m=np.inf)
-    goal = world.distance_m < GOAL_DISTANCE_M
-    if not goal.any():
+    layout = Layout.of_plan(plan, radio_map.grid, speed)
+    reached = reached_from_start(layout, plan, radio_map)
+    source = plan.require_source()
+    if reached is None or not (reached.distance_m(*source[:2]) < GOAL_DISTANCE_M).any():
         return Reach(speed, None, None, np.empty((0, 2)), 0)
-    path = shortest_path(world, goal)
+    world = GridWorld.from_map(plan, radio_map, speed, layout=layout)
+    path = shortest_path(world, world.distance_m < GOAL_DISTANCE_M)
     return Reach(speed, path.steps, path.length_m, *_missed(plan, world, radio_map.grid))
+
+
+def source_unreached(plan: FloorPlan, flights: Sequence[Reach]) -> Finding | None:
+    """Report a transmitter that none of the flights reaches; None if one does, or there is none."""
+    if not flights or any(reach.steps is not None for reach in flights):
+        return None
+    x, y, _ = plan.require_source()
+    return Finding(
+        "warning",
+        "source not reached",
+        f"at speeds {', '.join(str(reach.speed) for reach in flights)} no cell nearer than "
+        f"{GOAL_DISTANCE_M:g} m to the source can be reached from the start {plan.start}; "
+        f"{speeds_that_can(plan, _map_without_readings(plan))}",
+        (x, y),
+    )
 
 
 def unreached(reach: Reach) -> Finding | None:

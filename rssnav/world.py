@@ -111,7 +111,7 @@ class GridWorld:
         if layout is None or layout.speed != speed:
             layout = Layout.of_plan(plan, radio_map.grid, speed)
         source = plan.require_source()
-        reached = _reached(layout, plan, radio_map)
+        reached = reached_from_start(layout, plan, radio_map)
         if reached is None or not np.any(reached.distance_m(*source[:2]) < goal_distance_m):
             raise _unreachable(plan, radio_map, speed, goal_distance_m)
         return cls(
@@ -183,8 +183,14 @@ class GridWorld:
         return self.layout.on_grid(values, fill)
 
 
-def _reached(layout: Layout, plan: FloorPlan, radio_map: RadioMap) -> Layout | None:
-    """Cells reachable from the start, breadth first from it; None if it has no possible step."""
+def reached_from_start(layout: Layout, plan: FloorPlan, radio_map: RadioMap) -> Layout | None:
+    """Cells reachable from the start, breadth first from it; None if it has no possible step.
+
+    Raises
+    ------
+    WorldError
+        When the map has no cell centre at the start.
+    """
     i_y, i_x = np.divmod(_start_cell(plan, radio_map), radio_map.grid.x.size)
     start = np.flatnonzero(np.all(layout.cell == (i_y, i_x), axis=1))
     return layout.part(layout.reachable(int(start[0]))) if start.size else None
@@ -230,19 +236,24 @@ def _check_map(plan: FloorPlan, radio_map: RadioMap) -> None:
 def _unreachable(
     plan: FloorPlan, radio_map: RadioMap, speed: int, goal_distance_m: float
 ) -> WorldError:
-    """Build the error for an unreachable transmitter; it lists the speeds that do reach it."""
+    """Build the error for an unreachable transmitter."""
+    return WorldError(
+        f"plan {plan.name!r}: at speed {speed} no cell nearer than {goal_distance_m:g} m to the "
+        f"source {plan.source} can be reached from the start {plan.start}; "
+        f"{speeds_that_can(plan, radio_map, goal_distance_m)}"
+    )
+
+
+def speeds_that_can(
+    plan: FloorPlan, radio_map: RadioMap, goal_distance_m: float = GOAL_DISTANCE_M
+) -> str:
+    """Say at which speeds a cell near the transmitter can be reached from the start."""
     working: list[int] = []
     for other in _SPEEDS_TRIED:
-        reached = _reached(Layout.of_plan(plan, radio_map.grid, other), plan, radio_map)
+        reached = reached_from_start(Layout.of_plan(plan, radio_map.grid, other), plan, radio_map)
         near = reached and reached.distance_m(*plan.require_source()[:2]) < goal_distance_m
         if near is not None and near.any():
             working.append(other)
-    remedy = (
-        f"speeds that can: {', '.join(map(str, working))}"
-        if working
-        else f"no speed from 1 to {_SPEEDS_TRIED[-1]} can: open a way in the plan"
-    )
-    return WorldError(
-        f"plan {plan.name!r}: at speed {speed} no cell nearer than {goal_distance_m:g} m to the "
-        f"source {plan.source} can be reached from the start {plan.start}; {remedy}"
-    )
+    if not working:
+        return f"no speed from 1 to {_SPEEDS_TRIED[-1]} can: open a way in the plan"
+    return f"speeds that can: {', '.join(map(str, working))}"

@@ -34,6 +34,7 @@ START_GAP_M = 0.2
 _PARALLEL_SINE = 0.03
 _SIDE_BY_SIDE_M = 0.2
 _JAMB_M = 0.01
+_LARGE_M2 = 1000.0
 
 Severity = Literal["error", "warning"]
 
@@ -54,7 +55,13 @@ class Finding:
         Where in the building, (x, y) [m]; None if nowhere in particular.
     """
 
-    FLIGHT_KINDS: ClassVar[tuple[str, ...]] = ("start", "start near wall", "no door", "not reached")
+    FLIGHT_KINDS: ClassVar[tuple[str, ...]] = (
+        "start",
+        "start near wall",
+        "no door",
+        "not reached",
+        "source not reached",
+    )
     """Kinds of findings that matter to flights only."""
 
     severity: Severity
@@ -210,10 +217,11 @@ def _slivers_and_closed_rooms(plan: UncheckedPlan) -> Iterator[Finding]:
 
 
 def _no_door(room: Polygon) -> str:
-    x_min, y_min, x_max, y_max = room.bounds
+    x_min, y_min, x_max, y_max = (round(side, 2) + 0.0 for side in room.bounds)
+    area = f"{room.area:.4g}" if room.area < _LARGE_M2 else f"{room.area:.0f}"
     return (
-        f"no door or passage leads to the room of {room.area:.4g} m² from ({x_min:.4g}, "
-        f"{y_min:.4g}) to ({x_max:.4g}, {y_max:.4g})"
+        f"no door or passage leads to the room of {area} m² from ({x_min:g}, {y_min:g}) "
+        f"to ({x_max:g}, {y_max:g})"
     )
 
 

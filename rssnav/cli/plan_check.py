@@ -92,13 +92,13 @@ def _safe_repair(plan: UncheckedPlan) -> RepairedPlan:
     if not repaired.changes:
         return repaired
     written = loads_unchecked(repaired.toml()).plan
-    if written == repaired.plan and (_is_usable(written) or not _is_usable(plan)):
+    if written == repaired.plan and _use(written) >= _use(plan):
         return repaired
     return RepairedPlan(plan, ())
 
 
-def _is_usable(plan: UncheckedPlan) -> bool:
-    """Whether a plan has no errors, and its source can be reached if it has one."""
+def _use(plan: UncheckedPlan) -> int:
+    """What a plan can be used for: 0 nothing, 1 maps, 2 flights to its source too."""
     from raytrace import SceneError
     from rssnav import WorldError
     from rssnav.scenes import scene_of
@@ -106,10 +106,12 @@ def _is_usable(plan: UncheckedPlan) -> bool:
     try:
         checked = FloorPlan.of(plan)
         scene_of(checked)
-        _flights(checked)
-    except (PlanError, SceneError, WorldError):
-        return False
-    return True
+    except (PlanError, SceneError):
+        return 0
+    try:
+        return 1 + any(reach.steps is not None for reach in _flights(checked))
+    except WorldError:
+        return 1
 
 
 def _write(repaired: RepairedPlan, old_text: str, path: Path, output: Path | None) -> None:
@@ -131,7 +133,7 @@ def _write(repaired: RepairedPlan, old_text: str, path: Path, output: Path | Non
 
 
 def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool) -> None:
-    from rssnav.reachability import unreached
+    from rssnav.reachability import source_unreached, unreached
     from rssnav.scenes import scene_of
 
     findings = list(inspect(file))
@@ -143,7 +145,8 @@ def _report(file: PlanFile, plan: str, changes: Sequence[Change], as_json: bool)
         scene_of(checked)
         flights = _flights(checked)
         findings = [f for f in findings if flights or f.concerns == "map"]
-        findings += [finding for reach in flights if (finding := unreached(reach)) is not None]
+        told = (source_unreached(checked, flights), *map(unreached, flights))
+        findings += [finding for finding in told if finding is not None]
         summary |= summary_of(checked)
     if as_json:
         report = {

@@ -12,6 +12,7 @@ so that the two sides a ray crosses add up to the block.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -164,7 +165,19 @@ def _axes(part: Polygon, thickest_m: float) -> list[Axis]:
     inside = part.buffer(1e-6)
     shapely.prepare(inside)
     found = [_axis_between(edges, int(i), int(j), thickest_m) for i, j in near[opposed]]
-    return [a for a in found if a is not None and inside.covers(LineString([a.start, a.end]))]
+    return [part for axis in found if axis is not None for part in _solid_parts(axis, inside)]
+
+
+def _solid_parts(axis: Axis, inside: BaseGeometry) -> Iterator[Axis]:
+    """Yield the sections of an axis in the solid: a niche or a shaft may interrupt a wall."""
+    line = LineString([axis.start, axis.end])
+    if inside.covers(line):
+        yield axis
+        return
+    for part in shapely.get_parts(line.intersection(inside)):
+        if part.length > axis.thickness_m:
+            (x0, y0), *_, (x1, y1) = part.coords
+            yield replace(axis, start=(x0, y0), end=(x1, y1))
 
 
 def _with_filling_flag(axis: Axis, fillings: BaseGeometry) -> Axis:

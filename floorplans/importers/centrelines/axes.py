@@ -20,7 +20,11 @@ _DUPLICATE_FRACTION = (
 _OFFSET_FRACTION = 0.4  # of the thicker wall's thickness between collinear axes
 _LIKE = 1.4  # ratio of thicknesses up to which two sections of a line are one wall
 _ACROSS_M = 1.0  # gap up to which a short section is joined: the thickness of a wall across
+_EDGE_M = 0.01  # beside the ends of a gap, which are edges of the solid
 _SHORT = 2.0  # times its thickness: a shorter section takes the thickness of its neighbour
+
+
+_IsWall = Callable[[float, float, float], bool]
 
 
 @dataclass(frozen=True)
@@ -158,12 +162,19 @@ def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
     ends = np.array([[axis.start, axis.end] for axis in group])
     offset = float(np.average((ends @ across).mean(axis=1), weights=areas))
 
-    def point(s: float) -> Point:
-        x, y = along * s + across * offset
+    def point(s: float, beside_m: float = 0.0) -> Point:
+        x, y = along * s + across * (offset + beside_m)
         return float(x), float(y)
 
-    def is_solid(low: float, high: float) -> bool:
-        return high <= low or LineString([point(low), point(high)]).within(solid)
+    def is_solid(low: float, high: float, beside_m: float = 0.0) -> bool:
+        ends = [point(low, beside_m), point(high, beside_m)]
+        return high <= low or LineString(ends).within(solid)
+
+    def is_wall(low: float, high: float, thickness_m: float) -> bool:
+        """Whether only solid lies between, and over a longer gap no wall twice as thick."""
+        sides = (-thickness_m, thickness_m) if high - low > _ACROSS_M else ()
+        thicker = (is_solid(low + _EDGE_M, high - _EDGE_M, side) for side in sides)
+        return is_solid(low, high) and not any(thicker)
 
     s = np.sort(ends @ along, axis=1)
     sections = [
@@ -174,7 +185,7 @@ def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
     ]
     return [
         Axis(point(section.low), point(section.high), section.thickness_m)
-        for section in _merged(sections, is_solid)
+        for section in _merged(sections, is_wall)
     ]
 
 
@@ -189,18 +200,18 @@ def _without_duplicates(axes: list[Axis]) -> list[Axis]:
     return kept
 
 
-def _merged(sections: list[_Section], is_solid: Callable[[float, float], bool]) -> list[_Section]:
+def _merged(sections: list[_Section], is_wall: _IsWall) -> list[_Section]:
     """Join neighbours of similar thickness, then short ones and fillings with any.
 
     In this order, because a long wall often consists of short pieces.
     """
-    same = _joined(sections, is_solid, _same_thickness, np.inf)
-    return _touching(_joined(same, is_solid, _alike, _ACROSS_M), is_solid)
+    same = _joined(sections, is_wall, _same_thickness, np.inf)
+    return _touching(_joined(same, is_wall, _alike, _ACROSS_M), is_wall)
 
 
 def _joined(
     sections: list[_Section],
-    is_solid: Callable[[float, float], bool],
+    is_wall: _IsWall,
     alike: Callable[[_Section, _Section], bool],
     max_gap_m: float,
 ) -> list[_Section]:
@@ -211,7 +222,7 @@ def _joined(
         if following.high <= last.high:
             continue
         near = following.low - last.high <= max_gap_m
-        if near and alike(last, following) and is_solid(last.high, following.low):
+        if near and alike(last, following) and _meet(last, following, is_wall):
             like = max(last, following, key=lambda part: (not part.is_filling, part.length_m))
             done[-1] = replace(like, low=last.low, high=following.high)
         else:
@@ -219,13 +230,18 @@ def _joined(
     return done
 
 
-def _touching(sections: list[_Section], is_solid: Callable[[float, float], bool]) -> list[_Section]:
+def _meet(last: _Section, following: _Section, is_wall: _IsWall) -> bool:
+    """Whether there is wall between two sections."""
+    return is_wall(last.high, following.low, max(last.thickness_m, following.thickness_m))
+
+
+def _touching(sections: list[_Section], is_wall: _IsWall) -> list[_Section]:
     """Make neighbours touch midway, where there is solid between them."""
     done = sections[:1]
     for following in sections[1:]:
         last = done[-1]
         near = following.low - last.high <= _ACROSS_M
-        if near and is_solid(last.high, following.low):
+        if near and _meet(last, following, is_wall):
             between = (last.high + following.low) / 2
             done[-1] = replace(last, high=between)
             following = replace(following, low=between)

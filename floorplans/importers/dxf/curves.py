@@ -27,7 +27,8 @@ _MIN_RATIO = 0.7
 _SAME = 1e-6
 """A chain whose ends are nearer than this fraction of its length is closed."""
 _EXTERNAL = 1
-"""Flag of an outer boundary of a hatch."""
+_NOT_CLOSED = 32
+"""Flags of an outer boundary of a hatch, and of one that encloses nothing."""
 _FAR = 1e12
 """Larger coordinates are invalid in any unit."""
 
@@ -220,17 +221,40 @@ def _hatch(hatch: Any, tolerance: float) -> Iterator[Curve]:
 
     A boundary within another is a hole, unless it is marked as an outer one beside marked holes.
     """
-    from ezdxf.path import from_hatch
-
-    paths = [[_flat(v) for v in path.flattening(tolerance)] for path in from_hatch(hatch)]
-    marks = [bool(path.path_type_flags & _EXTERNAL) for path in hatch.paths]
-    is_marked = len(marks) == len(paths) and not all(marks)
-    outer = marks if is_marked else [False] * len(paths)
-    rings = [(points, mark) for points, mark in zip(paths, outer, strict=True) if len(points) > 2]
+    rings = [
+        ([_flat(v) for v in path.flattening(tolerance)], is_outer)
+        for path, is_outer in _boundaries(hatch)
+    ]
+    rings = [(points, is_outer) for points, is_outer in rings if len(points) > 2]
+    if all(is_outer for _, is_outer in rings):
+        rings = [(points, False) for points, _ in rings]
     for part in _filled(rings):
         if isinstance(part, Polygon):
             ring, *holes = (_ring(ring) for ring in (part.exterior, *part.interiors))
             yield Curve(ring, closed=True, filled=True, holes=tuple(holes))
+
+
+def _boundaries(hatch: Any) -> Iterator[tuple[Any, bool]]:
+    """Yield the closed boundaries of a hatch as paths, and whether each is marked as outer."""
+    from ezdxf.path import from_hatch_boundary_path
+
+    for boundary in hatch.paths:
+        if not _is_open(boundary):
+            path = from_hatch_boundary_path(boundary, hatch.ocs(), hatch.dxf.elevation.z)
+            for part in path.sub_paths() if path.has_sub_paths else (path,):
+                yield part, bool(boundary.path_type_flags & _EXTERNAL)
+
+
+def _is_open(boundary: Any) -> bool:
+    """Whether a boundary encloses nothing: it is marked so, or its edges mostly do not meet."""
+    if boundary.path_type_flags & _NOT_CLOSED:
+        return True
+    ends = [(edge.start_point, edge.end_point) for edge in getattr(boundary, "edges", ())]
+    jumps = sum(
+        min(a.distance(b) for a in one for b in other)
+        for one, other in zip(ends, [*ends[1:], *ends[:1]], strict=True)
+    )
+    return jumps > sum(start.distance(end) for start, end in ends)
 
 
 def _filled(rings: Sequence[tuple[list[Point], bool]]) -> Iterator[BaseGeometry]:

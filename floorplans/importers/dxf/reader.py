@@ -17,19 +17,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LinearRing, LineString, Polygon
+from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 from floorplans.errors import PlanError
 from floorplans.importers.centrelines.align import aligned_to_main_directions, along_walls
-from floorplans.importers.centrelines.areas import MAX_HEAVY_M, MAX_THICKNESS_M, walls_of_area
+from floorplans.importers.centrelines.areas import MAX_HEAVY_M, walls_of_area
 from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
-from floorplans.importers.centrelines.parallel_lines import MIN_THICKNESS_M, strips_of_lines
+from floorplans.importers.centrelines.parallel_lines import strips_of_lines
 from floorplans.importers.centrelines.split_by_material import by_material, without_openings
 from floorplans.importers.centrelines.spurious import without_spurious_walls
 from floorplans.importers.centrelines.tiles import Tiles
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
+from floorplans.importers.dxf.bodies import corners_of, thin_bodies, without_floors
 from floorplans.importers.dxf.curves import Curve, scaled_curve
 from floorplans.importers.dxf.drawing import Content, Symbol, load_document, read_content
 from floorplans.importers.dxf.glazing import (
@@ -110,6 +111,7 @@ def read_dxf(path: Path, options: ImportOptions, report: Report = no_report) -> 
     layers = layers_of(content, options.layers)
     check_size(_size(content, layers), unit, stated_by)
     metric = _with_doors_of_swings(_in_metres(content, UNITS[unit]), layers)
+    metric, floors = without_floors(metric, layers)
     walls, openings = _building(metric, layers, report)
     return Draft(
         name=path.stem,
@@ -119,7 +121,7 @@ def read_dxf(path: Path, options: ImportOptions, report: Report = no_report) -> 
         notes=(
             f"unit {unit}, as {stated_by}",
             *([missing_blocks(content)] if content.missing else []),
-            *_floor_fills(metric, layers),
+            *floors,
             *unmatched(options.layers, content.n_objects),
         ),
         original=layers.original(metric),
@@ -229,14 +231,9 @@ def _faces(content: Content, layers: Layers) -> NDArray[np.float64]:
 
 def _segments(curves: Sequence[Curve]) -> NDArray[np.float64]:
     """Straight pieces of curves, (n, 2, 2)."""
-    chains = [_corners(curve) for curve in curves]
+    chains = [corners_of(curve) for curve in curves]
     pieces = [np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains]
     return np.concatenate([np.empty((0, 2, 2)), *pieces])
-
-
-def _corners(curve: Curve) -> NDArray[np.float64]:
-    """Corners of a chain, of a closed one with the first again at its end, (n, 2)."""
-    return np.array([*curve.points, *curve.points[: curve.closed]])
 
 
 def _panes(content: Content, layers: Layers) -> list[LineString]:
@@ -254,7 +251,7 @@ def _bodies(content: Content, layers: Layers) -> _Bodies:
     check_crossings(
         {f"layer {name}": _segments(content.curves[name]) for name in layers.of("wall")}
     )
-    by_material_ = {material: _thin_bodies(chains) for material, chains in curves.items()}
+    by_material_ = {material: thin_bodies(chains) for material, chains in curves.items()}
     faces = shapely.union_all([body for closed, _ in by_material_.values() for body in closed])
     beside = faces.buffer(_AT_FACE_M)
     area: dict[Material, BaseGeometry] = {}
@@ -292,60 +289,6 @@ def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:
             if part.length > min(MIN_SINGLE_M, line.length / 2):
                 (x0, y0), *_, (x1, y1) = part.coords
                 yield RawWall((x0, y0), (x1, y1), None, material)
-
-
-def _thin_bodies(chains: Sequence[Curve]) -> tuple[list[Polygon], NDArray[np.float64]]:
-    """Closed chains thin enough to be walls, and the segments of the others."""
-    area: list[Polygon] = []
-    segments: list[NDArray[np.float64]] = []
-    for chain in chains:
-        points = _corners(chain)
-        body = _body(chain, points)
-        if body is not None and (_is_heavy(body) if chain.filled else _is_thin(body)):
-            area += [part for part in shapely.get_parts(body) if isinstance(part, Polygon)]
-        elif not chain.filled:
-            segments.append(np.stack([points[:-1], points[1:]], axis=1))
-    return area, np.concatenate(segments) if segments else np.empty((0, 2, 2))
-
-
-def _body(chain: Curve, points: NDArray[np.float64]) -> BaseGeometry | None:
-    """Area that a chain encloses, or covers as a wide line; None if it does neither."""
-    if chain.width >= MIN_THICKNESS_M:
-        wide = LineString(points) if not chain.closed else LinearRing(chain.points)
-        return wide.buffer(chain.width / 2, cap_style="flat", join_style="mitre")
-    if not chain.closed or len(points) <= 3:
-        return None
-    whole = shapely.make_valid(Polygon(points))
-    if not chain.holes or _is_thin(whole):
-        return whole  # holes in a wall are shafts and niches, which a plan cannot show
-    return shapely.make_valid(Polygon(points, chain.holes))
-
-
-def _is_thin(body: BaseGeometry) -> bool:
-    """Whether an area is thin enough for a wall, and no room or floor."""
-    return body.area > 0 and body.buffer(-MAX_THICKNESS_M / 2).is_empty
-
-
-def _is_heavy(fill: BaseGeometry) -> bool:
-    """Whether a filled area may be masonry, as most of it is no wider than a heavy wall."""
-    half = MAX_HEAVY_M / 2
-    wide = fill.buffer(-half, join_style="mitre").buffer(half, join_style="mitre")
-    return fill.area > 0 and wide.intersection(fill).area < fill.area / 2
-
-
-def _floor_fills(content: Content, layers: Layers) -> Iterator[str]:
-    """Yield a sentence for each layer of walls with fills that are too wide for masonry."""
-    for layer in layers.of("wall"):
-        fills = (_body(c, _corners(c)) for c in content.curves[layer] if c.filled)
-        wide = [body for body in fills if body is not None and not _is_heavy(body)]
-        if wide:
-            largest = max(wide, key=lambda body: body.area)
-            x, y = largest.representative_point().coords[0]
-            yield (
-                f"layer {layer}: {len(wide)} filled area{'s' * (len(wide) > 1)} wider than "
-                f"{MAX_HEAVY_M:g} m left out, taken for floors; the largest has "
-                f"{largest.area:.3g} m² around ({x:.2f}, {y:.2f}) of the drawing, in metres"
-            )
 
 
 def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> list[RawOpening]:

@@ -219,6 +219,35 @@ def test_a_hatch_with_a_thick_part_is_masonry_and_one_of_a_floor_is_reported(tmp
     assert "(23.00, 2.50)" in note
 
 
+@pytest.mark.parametrize("flag", [0, 32])
+def test_a_boundary_of_a_hatch_that_encloses_nothing_is_no_wall(tmp_path: Path, flag: int):
+    doc = draw.new()
+    draw.add_rings(doc.modelspace(), draw.bodies(), "WALL")
+    draw.add_openings(doc)
+    hatch = doc.modelspace().add_hatch(dxfattribs={"layer": "WALL"})
+    for ring in draw.bodies():
+        hatch.paths.add_polyline_path([(1000 * x, 1000 * y) for x, y in ring], is_closed=True)
+    stray = hatch.paths.add_edge_path(flags=1 + flag)
+    for start, end in (((300, 200), (300, 900)), ((7800, 5700), (7800, 5000))):
+        stray.add_line(start, end)
+    assert_is_the_flat(imported(doc, tmp_path).plan)
+
+
+def test_a_fill_between_the_outlines_of_filled_walls_is_a_floor(tmp_path: Path):
+    doc = draw.new()
+    space = doc.modelspace()
+    draw.add_rings(space, draw.bodies(), "WALL")
+    draw.add_openings(doc)
+    for ring in (*draw.bodies(), draw.rectangle(5.05, 4.9, 7.7, 5.7)):
+        hatch = space.add_hatch(dxfattribs={"layer": "WALL"})
+        hatch.paths.add_polyline_path([(1000 * x, 1000 * y) for x, y in ring], is_closed=True)
+    result = imported(doc, tmp_path)
+    assert_is_the_flat(result.plan)
+    (note,) = (line for line in result.report if "taken for floors" in line)
+    assert "1 filled area left out" in note
+    assert "2.12 m²" in note
+
+
 @pytest.mark.parametrize("scale", [1.0, 0.5])
 def test_a_polyline_with_a_width_is_a_wall_as_thick(tmp_path: Path, scale: float):
     doc = draw.new()

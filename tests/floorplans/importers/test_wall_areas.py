@@ -52,6 +52,22 @@ def test_a_heavy_wall_is_a_wall_and_a_thick_block_a_ring(angle: float) -> None:
     assert outer.area == pytest.approx(20.4 * 12.4, rel=0.01)
 
 
+@pytest.mark.parametrize("angle", [0, 23])
+def test_a_wall_goes_on_beyond_niches_within_it(angle: float) -> None:
+    niches = [box(x, 0.1, x + 0.8, 0.5) for x in (2, 5, 8)]
+    whole = box(0, 0, 12, 0.6) - shapely.union_all(niches)
+    area = affinity.rotate(whole, angle, origin=(0, 0))
+    walls = walls_of_area(area, 0.02)
+    back = [
+        (affinity.rotate(LineString([w.start, w.end]), -angle, origin=(0, 0)), w.thickness_m)
+        for w in walls
+    ]
+    thick = sorted(line.bounds for line, thickness_m in back if thickness_m == pytest.approx(0.6))
+    ends = [x for x_min, _, x_max, _ in thick for x in (x_min, x_max)]
+    assert ends == pytest.approx([0, 2, 2.8, 5, 5.8, 8, 8.8, 12], abs=0.02)
+    assert all(line.centroid.y == pytest.approx(0.3) for line, t in back if t > 0.3)
+
+
 def test_a_bent_wall_becomes_chords_within_its_body() -> None:
     arc = Point(0, 0).buffer(8, quad_segs=24) - Point(0, 0).buffer(7.7, quad_segs=24)
     walls = walls_of_area(arc & box(0, 0, 9, 9), 0.02)

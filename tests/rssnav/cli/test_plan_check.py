@@ -9,10 +9,11 @@ import pytest
 from cli_plans import ROOM, done, edited, fault, room_file, run
 
 import floorplans
-from rssnav.reachability import reach_by_speed, unreached
+from rssnav.reachability import reach_by_speed, source_unreached, unreached
 
 CLOSET = "[[4, 0], [4, 2], [6, 2]]"
 PARTITION = "points = [[3, 0], [3, 4]]"
+DOOR = '{ kind = "door", offset_m = 1, width_m = 1, head_m = 2.4 }'
 SHORT = edited(PARTITION, "points = [[3, 0.03], [3, 3.96]]")
 
 
@@ -125,6 +126,32 @@ def test_cells_behind_a_shut_door_are_told(tmp_path) -> None:
     assert "at speed 1, 4 of 24 cells (17 %) cannot be reached" in finding.text
     assert finding.at == (5.0, 1.0)
     assert np.isin(two.missed, one.missed).all()
+
+
+def test_a_plan_whose_source_no_flight_reaches_is_good_for_maps(tmp_path) -> None:
+    path = room_file(tmp_path, edited(DOOR, ""))
+    before, after = done("plan", "check", path).split("\nfor a flight\n")
+    assert "warning" not in before
+    assert "warning  (1.200, 1.100)  source not reached: at speeds 1, 2, 4 no cell" in after
+    assert "no speed from 1 to 8 can: open a way in the plan" in after
+    told = json.loads(done("plan", "check", path, "--json"))
+    assert [reach["steps"] for reach in told["flights"]] == [None, None, None]
+    assert {f["concerns"] for f in told["findings"]} == {"flight"}
+
+
+def test_a_repair_keeps_a_plan_whose_source_no_flight_reaches(tmp_path) -> None:
+    path = room_file(tmp_path, SHORT.replace(DOOR, ""))
+    done("plan", "check", path, "--fix")
+    assert path.read_text().startswith("# Repaired:")
+
+
+def test_a_speed_at_which_no_step_is_possible_is_one_row(tmp_path) -> None:
+    low = ROOM.replace("[6, 4], [0, 4]", "[6, 3], [0, 3]").replace("[3, 4]", "[3, 3]")
+    low = low.replace("start = [5.5, 3.5]", "start = [5.5, 2.5]")
+    plan = floorplans.load(room_file(tmp_path, low))
+    reaches = reach_by_speed(plan, (1, 4))
+    assert [reach.steps is None for reach in reaches] == [False, True]
+    assert source_unreached(plan, reaches) is None
 
 
 def test_every_cell_of_an_open_hall_is_reached() -> None:
