@@ -22,6 +22,7 @@ from floorplans.repair.geometry import (
 )
 from floorplans.walls import TOLERANCE_M, Point, Wall, centre_lines
 
+_TINY_M = 0.01
 _MIN_SINE = sin(radians(15.0))
 """Sine of the smallest angle at which centre lines are prolonged to where they cross."""
 _WIDER = 1.01
@@ -242,7 +243,8 @@ def _walls_between(
     for wall, old, new in zip(walls, ends, moved, strict=True):
         start, end = (float(new[0][0]), float(new[0][1])), (float(new[1][0]), float(new[1][1]))
         if dist(start, end) <= max(min(reach_m, wall.length_m / 2), TOLERANCE_M):
-            changes.append(Change("dropped", f"piece of {wall.length_m:.3g} m dropped", wall.start))
+            size = f"{wall.length_m:.2f}" if wall.length_m >= _TINY_M else f"under {_TINY_M:g}"
+            changes.append(Change("dropped", f"piece of {size} m dropped", wall.start))
             continue
         if (start, end) == (wall.start, wall.end):
             yield wall

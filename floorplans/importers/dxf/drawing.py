@@ -66,6 +66,8 @@ class Content:
         Layers that are off or frozen.
     missing : set of str
         Inserted blocks whose lines are in other files.
+    damaged : Counter of str
+        Objects of each layer that matters, of which no line can be read.
     """
 
     curves: defaultdict[str, list[Curve]] = field(default_factory=lambda: defaultdict(list))
@@ -74,6 +76,7 @@ class Content:
     n_objects: Counter[str] = field(default_factory=Counter[str])
     hidden: set[str] = field(default_factory=set[str])
     missing: set[str] = field(default_factory=set[str])
+    damaged: Counter[str] = field(default_factory=Counter[str])
 
 
 def load_document(path: Path) -> Document:
@@ -252,7 +255,9 @@ class _Collector:
         if entity.dxftype() not in CURVE_TYPES:
             return
         if self._meaning(layer).kind != "ignore":
-            self._content.curves[layer] += curves_of(entity, self._tolerance)
+            found = curves_of(entity, self._tolerance)
+            self._content.curves[layer] += found
+            self._content.damaged[layer] += not found
         elif self._n_shown < _MOST_SHOWN:
             self._show(layer, curves_of(entity, self._tolerance))
 
@@ -288,10 +293,10 @@ class _Collector:
         x, y, _ = matrix.ux
         usable = isfinite(hypot(x, y)) and hypot(x, y) > 0
         axis = (float(x), float(y)) if usable else (1.0, 0.0)
-        curves = (moved_curve(curve, matrix) for curve in self._block(insert, depth))
-        return Symbol(
-            kind, named or kind == "window", layer, axis, tuple(filter(is_finite, curves))
-        )
+        whole = self._block(insert, depth)
+        curves = tuple(filter(is_finite, (moved_curve(curve, matrix) for curve in whole)))
+        self._content.damaged[layer] += not curves
+        return Symbol(kind, named or kind == "window", layer, axis, curves)
 
     def _block(self, insert: Any, depth: int) -> tuple[Curve, ...]:
         """Lines of an insert's block and its nested blocks, in the block's own coordinates."""

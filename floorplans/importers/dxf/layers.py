@@ -120,6 +120,22 @@ def missing_blocks(content: Content) -> str:
     return f"the blocks {names} are in other files: bind these external references and save"
 
 
+def damaged_objects(content: Content, layers: Layers) -> str:
+    """Say how many objects on layers that are used have no line that can be read; empty if none."""
+    found = {
+        name: n
+        for name, n in sorted(content.damaged.items())
+        if n and layers.meanings[name].kind not in (None, "ignore")
+    }
+    if not found:
+        return ""
+    total = sum(found.values())
+    where = ", ".join(f"{n} on {name}" for name, n in [*found.items()][:10])
+    return (
+        f"{total} object{'s' * (total != 1)} left out, empty or with invalid coordinates: {where}"
+    )
+
+
 def _no_walls(content: Content) -> PlanError:
     problem = "; ".join(filter(None, ("no lines of walls were found", missing_blocks(content))))
     names = [name for name, _ in content.n_objects.most_common(20)]

@@ -40,7 +40,7 @@ from floorplans.importers.dxf.glazing import (
     glass_walls,
     loose_openings,
 )
-from floorplans.importers.dxf.layers import Layers, layers_of, missing_blocks
+from floorplans.importers.dxf.layers import Layers, damaged_objects, layers_of, missing_blocks
 from floorplans.importers.dxf.openings import (
     as_windows_outside,
     door_swings,
@@ -120,7 +120,7 @@ def read_dxf(path: Path, options: ImportOptions, report: Report = no_report) -> 
         layers=layers.uses(),
         notes=(
             f"unit {unit}, as {stated_by}",
-            *([missing_blocks(content)] if content.missing else []),
+            *filter(None, (missing_blocks(content), damaged_objects(content, layers))),
             *floors,
             *unmatched(options.layers, content.n_objects),
         ),

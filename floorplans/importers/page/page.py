@@ -73,7 +73,7 @@ def import_page(record: ImportRecord) -> str:
             faults=[str(fault) for fault in faults],
             materials=_materials(record),
             listed=[(text, _rows(record, kind)) for kind, text in _KINDS.items() if counts[kind]],
-            others=[f"{counts[kind]} {text}" for kind, text in _OTHERS.items() if counts[kind]],
+            others=[f"{text}: {counts[kind]}" for kind, text in _OTHERS.items() if counts[kind]],
         )
     )
 

@@ -47,6 +47,8 @@ _FILLED, _SMALL_M = 0.6, 0.4  # least filled fraction of an obstacle's hull, fro
 _BOXY = 0.9  # fraction of the box around it that a box-shaped obstacle fills
 _UNSTEADY = 0.4  # fraction of neighbouring pixels of different kinds that is noise
 _MANY_PIECES, _PIECES_PER_M = 50, 2.0  # isolated pieces, also per metre of wall, that are noise
+_UNKNOWN = 205
+"""Grey of unknown space on the page of an import."""
 _MOST_MEASURED = 200_000  # pixels that the plan is compared with
 _EVERYWHERE = np.ones((3, 3), dtype=np.bool_)
 _Shape = TypeVar("_Shape", Polygon, LineString)
@@ -293,11 +295,18 @@ def _known_pixels(grid: OccupancyGrid, knows_free: bool) -> KnownPixels:
 
 
 def _picture(grid: OccupancyGrid) -> DrawnPicture:
-    """The map as it was classified: black walls on white free and grey unknown space."""
-    values = np.where(grid.occupied, 0, np.where(grid.free, 255, 205)).astype(np.uint8)[::-1]
+    """The map as it was classified: black walls on white free and grey unknown space.
+
+    Without the margins of unknown space, which are often most of the picture.
+    """
+    values = np.where(grid.occupied, 0, np.where(grid.free, 255, _UNKNOWN)).astype(np.uint8)
+    rows, columns = (np.flatnonzero((values != _UNKNOWN).any(axis=axis)) for axis in (1, 0))
+    first_y, first_x = rows[0], columns[0]
+    values = values[first_y : rows[-1] + 1, first_x : columns[-1] + 1][::-1]
     file = BytesIO()
     Image.fromarray(values).save(file, "PNG", optimize=True)
     (a, b, c), (d, e, f) = _matrix(grid.metadata)
     n_y, n_x = values.shape
-    to_m = ((a, -b, c + b * n_y), (d, -e, f + e * n_y))
+    x, top = float(first_x), float(first_y + n_y)
+    to_m = ((a, -b, c + a * x + b * top), (d, -e, f + d * x + e * top))
     return DrawnPicture(file.getvalue(), (n_x, n_y), to_m)

@@ -219,6 +219,19 @@ def test_a_hatch_with_a_thick_part_is_masonry_and_one_of_a_floor_is_reported(tmp
     assert "(23.00, 2.50)" in note
 
 
+def test_objects_without_valid_lines_are_told(tmp_path: Path):
+    doc = draw.new()
+    space = doc.modelspace()
+    draw.add_rings(space, draw.bodies(), "WALL")
+    draw.add_openings(doc)
+    space.add_blockref("DOOR90", (float("inf"), 0), dxfattribs={"layer": "A-DOOR"})
+    space.add_line((0, 0), (float("nan"), 0), dxfattribs={"layer": "WALL"})
+    result = imported(doc, tmp_path)
+    assert_is_the_flat(result.plan)
+    (note,) = (line for line in result.notes if "invalid coordinates" in line)
+    assert note == "2 objects left out, empty or with invalid coordinates: 1 on A-DOOR, 1 on WALL"
+
+
 @pytest.mark.parametrize("flag", [0, 32])
 def test_a_boundary_of_a_hatch_that_encloses_nothing_is_no_wall(tmp_path: Path, flag: int):
     doc = draw.new()

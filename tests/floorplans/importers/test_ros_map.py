@@ -3,6 +3,7 @@
 import random
 import struct
 import zlib
+from io import BytesIO
 
 import numpy as np
 import pytest
@@ -146,6 +147,24 @@ def test_transparent_pixels_are_unknown(tmp_path) -> None:
         [[True, False, False]],
         [[False, False, True]],
     )
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3])
+def test_the_picture_shown_is_the_known_space_in_its_place(angle: float, tmp_path) -> None:
+    values = room_values()
+    text = YAML.replace("-2.0, 0.0]", f"-2.0, {angle}]")
+    picture = import_plan(write_map(tmp_path, values, text=text)).original.picture
+    rows, columns = (np.flatnonzero((values != 205).any(axis=axis)) for axis in (1, 0))
+    assert picture.size == (np.ptp(columns) + 1, np.ptp(rows) + 1)
+    corners = np.array([[0, 0, 1], [*picture.size, 1]]) @ np.array(picture.to_m).T
+    walls = room_values()[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    assert (
+        np.asarray(Image.open(BytesIO(picture.png))) == np.where(walls == 254, 255, walls)
+    ).all()
+    across_m = np.hypot(*(corners[1] - corners[0]))
+    assert across_m == pytest.approx(PIXEL_M * np.hypot(*picture.size))
+    plan = import_plan(write_map(tmp_path, values, text=text)).plan
+    assert corners.mean(axis=0) == pytest.approx(plan.outline.centroid.coords[0], abs=0.03)
 
 
 def test_a_plain_picture_needs_a_scale(tmp_path) -> None:
