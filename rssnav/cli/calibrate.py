@@ -40,6 +40,7 @@ from rssnav.cli.survey_options import (
 )
 from rssnav.measurements.calibrate import Calibration, Change, calibrate
 from rssnav.measurements.calibration_page import calibration_page
+from rssnav.measurements.doors import DoorState
 from rssnav.measurements.hold_out import SQUARE_M
 from rssnav.measurements.traced import survey_announcement
 from rssnav.messages import printable
@@ -78,6 +79,10 @@ def calibrate_plan(
             show_default="all dielectrics of the plan",
         ),
     ] = None,
+    doors: Annotated[
+        bool,
+        typer.Option("--doors", help="Also find which doors were open or shut during the survey."),
+    ] = False,
     offset: Offset = "one",
     square: Square = SQUARE_M,
     frequency: SurveyFrequency = None,
@@ -123,6 +128,8 @@ def calibrate_plan(
             offsets=offset,
             materials=material,
             square_m=square,
+            doors=doors,
+            edition=edition,
             progress=lambda done, total: show("calibrating", done, total),
         )
     contents: dict[Path, bytes] = {}
@@ -158,7 +165,7 @@ def _print(found: Calibration) -> None:
         [
             (
                 value.material,
-                value.kind + (" [S/m]" if value.kind == "conductivity" else ""),
+                f"{value.kind} [{value.unit}]" if value.unit else value.kind,
                 f"{value.quantity(value.prior):.3g}",
                 f"{value.quantity(fitted):.3g}",
                 f"{value.quantity(fitted - 2.0 * deviation):.3g} to "
@@ -167,6 +174,8 @@ def _print(found: Calibration) -> None:
             for value, fitted, deviation in found.rows()
         ],
     )
+    for state in found.doors:
+        say(_of_door(state))
     for told in found.found.not_told:
         say(
             f"{told.value.material}, {told.value.kind}: not fitted; one standard deviation of its "
@@ -183,6 +192,16 @@ def _print(found: Calibration) -> None:
             f"with {point.n_places} places: {point.before_db:.2f} dB before, "
             f"{point.after_db:.2f} dB after, at all others"
         )
+
+
+def _of_door(state: DoorState) -> str:
+    was, now = ("open" if is_open else "shut" for is_open in (state.was_open, state.is_open))
+    x, y = state.place
+    told = f"the readings tell no state; kept {was}"
+    if state.is_told:
+        told = f"{now}, as in the plan" if now == was else f"{now}, and not {was} as in the plan"
+        told += f" (log likelihood ratio {state.evidence:.1f})"
+    return f"door at ({x:.2f}, {y:.2f}) m: {told}"
 
 
 def _print_change(name: str, change: Change) -> None:

@@ -103,9 +103,13 @@ class GuardedHandler(WSHandler):
             refuse(self, len(self.connections), "connections")
 
     def on_close(self) -> None:
-        """Let another one come."""
+        """Let another one come, also where the session has ended before its connection."""
         self.connections.discard(self)
-        super().on_close()
+        try:
+            super().on_close()
+        except AssertionError:  # as Bokeh says that the connection has no session
+            application: Any = self.application
+            application.client_lost(self.connection)
 
     def open(self, *args: str, **kwargs: str) -> None:
         """Open a connection; close it at once for a token that the server has not made."""

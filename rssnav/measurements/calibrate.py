@@ -8,22 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from floorplans import FloorPlan
 from raytrace import Scene
-from raytrace.arrays import Bools, Floats, Ints
-from rssnav.measurements.agreement import Agreement
-from rssnav.measurements.calibration import (
-    Calibrated,
-    Levels,
-    TracedSurvey,
-    fit_what_is_told,
-    residuals_db,
-)
-from rssnav.measurements.hold_out import SQUARE_M, Fold, by_space, by_transmitter
+from rssnav.measurements.calibration import Calibrated, TracedSurvey
+from rssnav.measurements.doors import NO_DOORS, DoorSearch, DoorState
+from rssnav.measurements.held_out_fits import Change, CurvePoint, Work, change_of, curve_of
+from rssnav.measurements.hold_out import SQUARE_M, by_space, by_transmitter
 from rssnav.measurements.material_values import (
     MaterialValue,
     material_values,
@@ -36,36 +30,8 @@ from rssnav.measurements.survey import Survey, SurveyError
 from rssnav.measurements.traced import TraceSettings
 from rssnav.progress import Progress
 
-CURVE_PLACES = (5, 10, 20, 40)
-CURVE_DRAWS = 3
 FAR = 1.9
 """A fitted value this many standard deviations of its prior away is flagged as doubtful."""
-
-
-@dataclass(frozen=True)
-class Change:
-    """Agreement with readings that were held out, before and after a calibration."""
-
-    before: Agreement
-    after: Agreement
-
-
-@dataclass(frozen=True)
-class CurvePoint:
-    """What a calibration with few places gives at all others, on average over random draws.
-
-    Attributes
-    ----------
-    n_places
-        Places that are fitted to.
-    before_db, after_db
-        Sigma at the other places, with the plan's materials and with fitted ones; the offset is
-        fitted to the same few places [dB].
-    """
-
-    n_places: int
-    before_db: float
-    after_db: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +51,8 @@ class Calibration:
         How many places are needed.
     doubts
         Fitted values that are unusual, in words.
+    doors
+        What the readings tell of each door, if that was asked for.
     """
 
     plan: FloorPlan
@@ -93,6 +61,7 @@ class Calibration:
     transmitter: Change | None
     curve: tuple[CurvePoint, ...]
     doubts: tuple[str, ...]
+    doors: tuple[DoorState, ...] = ()
 
     @property
     def is_better(self) -> bool:
@@ -134,6 +103,7 @@ class Calibration:
                 for p in self.curve
             ],
             "doubts": list(self.doubts),
+            "doors": [state.summary() for state in self.doors],
         }
 
     def rows(self) -> list[tuple[MaterialValue, float, float]]:
@@ -152,6 +122,8 @@ def calibrate(
     offsets: OffsetPer = "one",
     materials: Sequence[str] | None = None,
     square_m: float = SQUARE_M,
+    doors: bool = False,
+    edition: str | None = None,
     progress: Progress | None = None,
 ) -> Calibration:
     """Fit a plan's materials to a survey.
@@ -163,10 +135,13 @@ def calibrate(
     offsets
         What a constant offset is fitted for.
     materials
-        Names of the materials; all dielectrics of the plan by default, but for those whose loss is
-        measured.
+        Names of the materials; all dielectrics of the plan by default, but for those of a measured
+        loss. Of these, the loss is fitted.
     square_m
         Side of the squares that are held out together [m].
+    doors, edition
+        Whether states of doors are found before materials are fitted, and the edition of the
+        built-in materials, see `rssnav.scene_of`.
     progress
         Called with the number of finished parts of the work and of all parts.
 
@@ -182,26 +157,31 @@ def calibrate(
             "expected a smaller square, or more places",
             survey.path,
         )
-    steps = _Steps(len(survey.transmitters) + 1 + len(folds) + len(others) + 1, progress)
-    measured = {m.name for m in plan.materials if m.loss_db is not None}
-    of = material_values(scene.slabs, settings.frequency_hz, materials, measured)
-    traced = TracedSurvey.of(scene, survey, settings, lambda done, _: steps.reached(done))
-    groups = offset_groups(survey, offsets)
-    work = _Work(traced, of, groups, traced.levels_db(of, plan_values(of), slopes=True))
-    found = work.fitted(np.ones(len(survey), dtype=bool))
-    settled = True
+    groups, everything = offset_groups(survey, offsets), np.ones(len(survey), dtype=bool)
+    n_fits = len(survey.transmitters) + 1 + len(folds) + len(others) + 1
+    steps, search, changed = _Steps(n_fits, progress), None, NO_DOORS
+    if doors:
+        search = DoorSearch(plan, survey, settings, groups, edition, steps.add)
+        changed = search.changed(everything)
+        plan, scene = search.plan(changed), search.scene(changed)
+    of_loss = {m.name: m for m in plan.materials if m.loss_db is not None}
+    of = material_values(scene.slabs, settings.frequency_hz, materials, of_loss)
+    traced = TracedSurvey.of(scene, survey, settings, lambda done, _: steps.advance())
+    at_plan = traced.levels_db(of, plan_values(of), slopes=True)
+    work = Work(traced, of, groups, at_plan, search, changed)
+    found, settled = work.fitted(everything), True
     if found.told and settings.config.is_limited:
         work, found, settled = _grown_anew(work, found, scene)
     steps.advance()
-    if not found.told:
+    if not found.told and not changed:
         raise SurveyError(
             "the readings do not tell the properties of any material: "
             + "; ".join(f"{t.value.material}, {t.value.kind}" for t in found.not_told),
             survey.path,
         )
-    space = _change(work, folds, steps)
-    transmitter = _change(work, others, steps) if others else None
-    curve = _curve(work)
+    space = change_of(work, folds, steps.advance)
+    transmitter = change_of(work, others, steps.advance) if others else None
+    curve = curve_of(work)
     steps.advance()
     return Calibration(
         plan_with(plan, scene.slabs, found.told, found.fit.values, settings.frequency_hz),
@@ -210,6 +190,7 @@ def calibrate(
         transmitter,
         curve,
         _doubts(found, settled),
+        () if search is None else search.states(changed),
     )
 
 
@@ -220,7 +201,7 @@ SETTLED_DB = 0.1
 """Root mean square change of the predictions below which they are not."""
 
 
-def _grown_anew(work: _Work, found: Calibrated, scene: Scene) -> tuple[_Work, Calibrated, bool]:
+def _grown_anew(work: Work, found: Calibrated, scene: Scene) -> tuple[Work, Calibrated, bool]:
     """Trace with the fitted materials and fit again, until the paths hold what is strong with them.
 
     A limit by power or loss leaves out what is weak with the materials of its own trace.
@@ -255,92 +236,15 @@ class _Steps:
     def __init__(self, total: int, progress: Progress | None) -> None:
         self._total, self._progress, self._done = total, progress, 0
 
-    def reached(self, done: int) -> None:
-        self._done = done
-        if self._progress is not None:
-            self._progress(done, self._total)
-
     def advance(self) -> None:
-        self.reached(self._done + 1)
+        self._done += 1
+        if self._progress is not None:
+            self._progress(self._done, self._total)
 
-
-class _Work(NamedTuple):
-    """What all fits share.
-
-    Attributes
-    ----------
-    traced, of
-        The readings, and the properties that may be fitted.
-    groups
-        (n,) which offset each reading has.
-    at_plan
-        All readings predicted with the plan's values.
-    """
-
-    traced: TracedSurvey
-    of: tuple[MaterialValue, ...]
-    groups: Ints
-    at_plan: Levels
-
-    def fitted(self, fit: Bools) -> Calibrated:
-        """Calibrate with some of the readings, from the plan's values on."""
-        traced = self.traced.rows(fit)
-        return fit_what_is_told(traced, self.of, self.groups[fit], self.at_plan.rows(fit))
-
-    def predicted(self, fit: Bools) -> tuple[Floats, Floats]:
-        """Predict all readings (n,) [dBm] before and after a calibration with some of them.
-
-        The offset is fitted to the same readings.
-        """
-        found = self.fitted(fit)
-        after = self.traced.levels_db(found.told, found.fit.values, slopes=False)
-        return self._with_offset(self.at_plan, fit), self._with_offset(after, fit)
-
-    def _with_offset(self, levels: Levels, fit: Bools) -> Floats:
-        groups = self.groups
-        *_, offset = residuals_db(self.traced.survey.rows(fit), groups[fit], levels.rows(fit))
-        known = np.full(int(groups.max(initial=0)) + 1, np.mean(offset))
-        known[groups[fit]] = offset
-        return levels.level + known[groups]
-
-
-def _change(work: _Work, folds: tuple[Fold, ...], steps: _Steps) -> Change:
-    """Repeat a calibration without the readings of each fold, and predict these."""
-    survey = work.traced.survey
-    both = np.full((2, len(survey)), -np.inf)
-    for fold in folds:
-        both[:, fold.test] = np.array(work.predicted(fold.fit))[:, fold.test]
-        steps.advance()
-    tested = np.logical_or.reduce([fold.test for fold in folds])
-    before, after = (Agreement.of(survey.rss_dbm, predicted, tested) for predicted in both)
-    if before is None or after is None:
-        raise SurveyError("no path reaches any reading: allow more transmissions", survey.path)
-    return Change(before, after)
-
-
-def _curve(work: _Work) -> tuple[CurvePoint, ...]:
-    """Calibrate with the readings at a few random places, and predict those at all others."""
-    survey, random = work.traced.survey, np.random.default_rng(0)
-    _, place = np.unique(survey.points[:, :2].round(1), axis=0, return_inverse=True)
-    n_places = int(place.max()) + 1
-    points: list[CurvePoint] = []
-    for n in CURVE_PLACES:
-        if 2 * n > n_places:
-            break
-        squares = np.array([_draw(work, place, random.permutation(n_places)[:n])
-                            for _ in range(CURVE_DRAWS)])  # fmt: skip
-        before, after = np.sqrt(squares.mean(axis=0))
-        points.append(CurvePoint(n, float(before), float(after)))
-    return tuple(points)
-
-
-def _draw(work: _Work, place: Ints, chosen: Ints) -> list[float]:
-    """Mean squares of residuals [dB^2] at other places, with the plan's and fitted materials."""
-    survey = work.traced.survey
-    fit = np.isin(place, chosen) & ~survey.is_censored
-    test = ~np.isin(place, chosen) & ~survey.is_censored
-    both = (Agreement.of(survey.rss_dbm, p, test) for p in work.predicted(fit))
-    return [np.inf if agreement is None else agreement.sigma_db**2 for agreement in both]
+    def add(self) -> None:
+        """One more part than was known is done."""
+        self._total += 1
+        self.advance()
 
 
 def _doubts(found: Calibrated, settled: bool) -> tuple[str, ...]:
@@ -354,9 +258,9 @@ def _doubts(found: Calibrated, settled: bool) -> tuple[str, ...]:
     for value, fitted in zip(found.told, found.fit.values, strict=True):
         away = (fitted - value.prior) / value.spread
         if abs(away) > FAR:
-            unit = " S/m" if value.kind != "permittivity" else ""
+            quantity = f"{value.quantity(float(fitted)):.3g} {value.unit}".strip()
             doubts.append(
-                f"{value.material}: a {value.kind} of {value.quantity(float(fitted)):.3g}{unit} is "
+                f"{value.material}: a {value.kind} of {quantity} is "
                 "at the limit, two standard deviations of building materials from the plan's: "
                 "furniture, thickness or doors may be wrong instead"
             )

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from floorplans import FloorPlan
 from rssnav.measurements.calibrate import Calibration
+from rssnav.measurements.doors import CLEAR
 from rssnav.measurements.pages import data_url, render, trace_assumptions
 from rssnav.measurements.survey import Survey
 from rssnav.measurements.traced import TraceSettings
@@ -20,6 +21,7 @@ def calibration_page(
         {
             "material": value.material,
             "kind": value.kind,
+            "unit": value.unit,
             "before": f"{value.quantity(value.prior):.3g}",
             "after": f"{value.quantity(fitted):.3g}",
             "low": f"{value.quantity(fitted - 2.0 * deviation):.3g}",
@@ -32,6 +34,7 @@ def calibration_page(
         title=f"{plan.name}: materials fitted to measured RSS",
         found=found,
         rows=rows,
+        clear=f"{CLEAR:g}",
         curve=data_url(curve_figure(found)) if found.curve else None,
         assumptions=trace_assumptions(plan, survey, settings),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,11 @@ from raytrace.constants import TWO_PI, VACUUM_PERMITTIVITY
 from raytrace.radio.materials import Dielectric, Layered, Material, Slab, dielectrics_of
 from rssnav.measurements.survey import SurveyError
 
-PERMITTIVITY, CONDUCTIVITY = "permittivity", "conductivity"
+PERMITTIVITY, CONDUCTIVITY, LOSS = "permittivity", "conductivity", "loss"
+UNITS = {PERMITTIVITY: "", CONDUCTIVITY: "S/m", LOSS: "dB"}
+LEAST_LOSS_DB = 0.1
+"""Loss beyond reflection that a material with less has as its prior [dB]."""
+
 LEAST_CONDUCTIVITY = 1e-5
 """Conductivity that a material without losses is given as its prior [S/m]."""
 
@@ -32,19 +36,31 @@ class MaterialValue:
     material
         Name of the material in the plan.
     kind
-        "permittivity", for log(permittivity - 1), or "conductivity", for log(conductivity).
+        "permittivity", for log(permittivity - 1), "conductivity", for log(conductivity), or "loss",
+        for the logarithm of a sheet's measured loss beyond that by reflection alone.
     prior, spread
         Mean and standard deviation of its prior.
+    least
+        What the quantity exceeds: 1 for a permittivity, the loss by reflection for a loss [dB].
+    loss_frequency_hz
+        Frequency of a loss [Hz].
     """
 
     material: str
     kind: str
     prior: float
     spread: float
+    least: float = 0.0
+    loss_frequency_hz: float = 0.0
 
     def quantity(self, value: float) -> float:
-        """Return the relative permittivity or the conductivity [S/m] of a value."""
-        return float(np.exp(value) + (1.0 if self.kind == PERMITTIVITY else 0.0))
+        """Return the relative permittivity, the conductivity [S/m] or the loss [dB] of a value."""
+        return float(np.exp(value) + self.least)
+
+    @property
+    def unit(self) -> str:
+        """Unit of the quantity; empty for a permittivity."""
+        return UNITS[self.kind]
 
 
 def spreads(frequency_hz: float) -> dict[str, float]:
@@ -84,7 +100,7 @@ def material_values(
     slabs: Sequence[Slab],
     frequency_hz: float,
     names: Sequence[str] | None = None,
-    measured: Collection[str] = (),
+    of_loss: Mapping[str, PlanMaterial] | None = None,
 ) -> tuple[MaterialValue, ...]:
     """List the properties that can be fitted.
 
@@ -95,37 +111,50 @@ def material_values(
     frequency_hz
         Frequency of the survey [Hz].
     names
-        Materials; all of the slabs by default.
-    measured
-        Materials whose loss is measured, which keep it.
+        Materials; by default all of the slabs but those of a measured loss.
+    of_loss
+        The plan's materials of a measured loss by name.
 
     Raises
     ------
     SurveyError
-        For a name that no slab has, or of a measured material.
+        For a name that no slab has.
     """
-    known = {n: m for n, m in dielectrics_in(slabs).items() if n not in measured}
-    for name in names or ():
-        if name in measured:
-            raise SurveyError(
-                f"material {name!r} has a measured loss, which stays as it is: give its "
-                "conductivity in place of loss_db to fit it"
-            )
+    losses = of_loss or {}
+    known, spread = dielectrics_in(slabs), spreads(frequency_hz)
+    found: list[MaterialValue] = []
+    for name in names or [name for name in known if name not in losses]:
         if name not in known:
             raise SurveyError(
                 f"no wall, floor or ceiling is made of {name!r} as a dielectric: "
                 f"known: {', '.join(known)}"
             )
-    spread = spreads(frequency_hz)
-    return tuple(
-        MaterialValue(name, kind, prior, spread[kind])
-        for name in (names or known)
-        for kind, prior in zip(
-            (PERMITTIVITY, CONDUCTIVITY),
-            _logarithms(known[name].complex_permittivity(frequency_hz), frequency_hz),
-            strict=True,
-        )
+        if name in losses:
+            found.append(_loss_value(slabs, losses[name], spread[CONDUCTIVITY]))
+            continue
+        priors = _logarithms(known[name].complex_permittivity(frequency_hz), frequency_hz)
+        found.append(MaterialValue(name, PERMITTIVITY, priors[0], spread[PERMITTIVITY], 1.0))
+        found.append(MaterialValue(name, CONDUCTIVITY, priors[1], spread[CONDUCTIVITY]))
+    return tuple(found)
+
+
+def _loss_value(slabs: Sequence[Slab], material: PlanMaterial, spread: float) -> MaterialValue:
+    """Return the loss of a material as a property.
+
+    Beyond reflection, it grows with the conductivity: their logarithms have the same spread.
+    """
+    loss_db, frequency_hz = material.loss_db, material.loss_frequency_hz
+    assert loss_db is not None
+    assert frequency_hz is not None
+    lossless = Dielectric.of_law(material.name, material.a)
+    through = (
+        lossless.coefficients(slab.thickness_m, frequency_hz, np.ones(1)).t_te[0]
+        for slab in slabs
+        if slab.material.name == material.name
     )
+    least = max(-20.0 * float(np.log10(abs(t))) for t in through)
+    prior = float(np.log(max(loss_db - least, LEAST_LOSS_DB)))
+    return MaterialValue(material.name, LOSS, prior, spread, least, frequency_hz)
 
 
 def plan_values(of: Sequence[MaterialValue]) -> Floats:
@@ -137,12 +166,28 @@ def slabs_with(
     slabs: Sequence[Slab], of: Sequence[MaterialValue], values: Floats, frequency_hz: float
 ) -> list[Slab]:
     """Return slabs with other values of their materials."""
+    losses = {v.material: (v, x) for v, x in zip(of, values, strict=True) if v.kind == LOSS}
     changed = {
         name: _dielectric(known, _of_material(of, values, name), frequency_hz)
         for name, known in dielectrics_in(slabs).items()
-        if any(v.material == name for v in of)
+        if name not in losses and any(v.material == name for v in of)
     }
-    return [slab._replace(material=_replaced(slab.material, changed)) for slab in slabs]
+
+    def material_of(slab: Slab) -> Material:
+        if slab.material.name in losses:
+            return _lossy(slab, *losses[slab.material.name])
+        return _replaced(slab.material, changed)
+
+    return [slab._replace(material=material_of(slab)) for slab in slabs]
+
+
+def _lossy(slab: Slab, loss: MaterialValue, value: float) -> Dielectric:
+    """Return a slab's material with another loss."""
+    material, frequency_hz = slab.material, loss.loss_frequency_hz
+    assert isinstance(material, Dielectric)
+    permittivity = material.rows[0].a
+    loss_db = loss.quantity(value)
+    return Dielectric.of_loss(material.name, permittivity, loss_db, frequency_hz, slab.thickness_m)
 
 
 def _of_material(of: Sequence[MaterialValue], values: Floats, material: str) -> dict[str, float]:
@@ -195,10 +240,13 @@ def plan_with(
 ) -> FloorPlan:
     """Return a plan with other values of its materials; built-in ones become the plan's own."""
     known = dielectrics_in(slabs)
-    laws = {
-        name: law_of(known[name], _of_material(of, values, name), frequency_hz)
-        for name in dict.fromkeys(v.material for v in of)
-    }
+    laws: dict[str, dict[str, float]] = {}
+    for name in dict.fromkeys(v.material for v in of):
+        quantities = _of_material(of, values, name)
+        if LOSS in quantities:
+            laws[name] = {"loss_db": quantities[LOSS]}
+        else:
+            laws[name] = law_of(known[name], quantities, frequency_hz)
     renamed = {name: name + SUFFIX for name in laws if name in MATERIALS}
     own = tuple(_own(material, laws, renamed) for material in plan.materials)
     new = tuple(replace(PlanMaterial(renamed[name]), **laws[name]) for name in renamed)

@@ -114,18 +114,38 @@ def test_what_readings_do_not_tell_is_kept(survey: Survey) -> None:
         calibrate(room(), scene_of(room()), one, SETTINGS, materials=["plasterboard"])
 
 
-def test_a_measured_loss_is_kept(survey: Survey) -> None:
-    """It is not fitted by default, and refused where it is asked for."""
-    board = PlanMaterial("board", 2.7, loss_db=6.0, loss_frequency_hz=FREQUENCY_HZ)
+def with_board(loss_db: float) -> floorplans.FloorPlan:
+    """Return the room with a partition of a measured loss."""
+    board = PlanMaterial("board", 2.7, loss_db=loss_db, loss_frequency_hz=FREQUENCY_HZ)
     walls = tuple(
         replace(wall, material="board") if wall.material == "plasterboard" else wall
         for wall in room().walls
     )
-    plan = replace(room(), walls=walls, materials=(board,))
-    with pytest.raises(SurveyError, match="'board' has a measured loss"):
-        calibrate(plan, scene_of(plan), survey, SETTINGS, materials=["board"])
-    of = material_values(scene_of(plan).slabs, FREQUENCY_HZ, None, {"board"})
+    return replace(room(), walls=walls, materials=(board,))
+
+
+def test_a_measured_loss_is_kept_by_default() -> None:
+    plan = with_board(6.0)
+    of_loss = {m.name: m for m in plan.materials}
+    of = material_values(scene_of(plan).slabs, FREQUENCY_HZ, None, of_loss)
     assert {value.material for value in of} == {"concrete", "ceiling_board"}
+
+
+def test_a_measured_loss_is_fitted_where_it_is_named(survey: Survey) -> None:
+    true, assumed = with_board(12.0), with_board(6.0)
+    exact = traced_dbm(scene_of(true), survey, SETTINGS)
+    noisy = np.random.default_rng(5).normal(0.0, 1.0, len(exact))
+    measured = replace(survey, rss_dbm=exact - 30.0 + noisy)
+    found = calibrate(assumed, scene_of(assumed), measured, SETTINGS, materials=["board"])
+    ((value, fitted, deviation),) = found.rows()
+    assert (value.kind, value.unit) == ("loss", "dB")
+    assert value.quantity(value.prior) == pytest.approx(6.0)
+    low, high = (value.quantity(fitted + 3.0 * side * deviation) for side in (-1, 1))
+    assert low < 12.0 < high
+    (board,) = floorplans.loads(floorplans.dumps(found.plan)).materials
+    assert board.loss_db == pytest.approx(value.quantity(fitted))
+    level = traced_dbm(scene_of(found.plan), measured, SETTINGS)
+    assert np.std(measured.rss_dbm - level) == pytest.approx(1.0, abs=0.15)
 
 
 def test_unknown_materials_are_refused(survey: Survey) -> None:

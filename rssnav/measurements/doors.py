@@ -1,0 +1,226 @@
+"""Which doors stood open and which were shut during a survey, as far as its readings tell.
+
+The survey is traced with each door in its other state. The door that explains the readings best is
+changed, and so on until none does so clearly.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from floorplans import FloorPlan, Opening, PlanError
+from raytrace import Scene
+from raytrace.arrays import Bools, Floats, Ints
+from rssnav.measurements.calibration import NOISE_DB, Levels, TracedSurvey, residuals_db
+from rssnav.measurements.survey import Survey
+from rssnav.measurements.traced import TraceSettings, traced_dbm
+from rssnav.scenes import scene_of
+
+LEAF, LEAF_M = "wood", 0.04
+"""A shut door where the plan has none to go by, and its thickness [m]."""
+
+KEPT = 4
+"""Traces of the survey with other states of doors that are kept with all their paths."""
+
+CLEAR = 10.0
+"""Difference of the logarithmic likelihood from which a state is told. It is large, since readings
+at neighbouring places err together, and count as independent here."""
+
+
+class Door(NamedTuple):
+    """Number of a door's wall in the plan, and of the opening in the wall."""
+
+    wall: int
+    opening: int
+
+
+@dataclass(frozen=True)
+class DoorState:
+    """What readings tell of a door.
+
+    Attributes
+    ----------
+    door
+        Which it is.
+    place
+        Its middle (x, y) [m].
+    was_open, is_open
+        In the plan, and by the readings.
+    evidence
+        How much more likely, by the logarithm of the likelihood, this state is than the other.
+    """
+
+    door: Door
+    place: tuple[float, float]
+    was_open: bool
+    is_open: bool
+    evidence: float
+
+    @property
+    def is_told(self) -> bool:
+        """Whether the readings tell the state; otherwise it is the plan's."""
+        return self.evidence >= CLEAR
+
+    def summary(self) -> dict[str, Any]:
+        """Return the numbers, for programs; no evidence where the other state is impossible."""
+        return {
+            "wall": self.door.wall,
+            "opening": self.door.opening,
+            "place": list(self.place),
+            "was_open": self.was_open,
+            "is_open": self.is_open,
+            "is_told": self.is_told,
+            "evidence": self.evidence if np.isfinite(self.evidence) else None,
+        }
+
+
+def doors_of(plan: FloorPlan) -> tuple[Door, ...]:
+    """List the doors of a plan that may be in either state."""
+    found: list[Door] = []
+    for w, wall in enumerate(plan.walls):
+        for o, opening in enumerate(wall.openings):
+            if opening.kind == "door":
+                with suppress(PlanError):
+                    with_changed(plan, [Door(w, o)])
+                    found.append(Door(w, o))
+    return tuple(found)
+
+
+def with_changed(plan: FloorPlan, doors: Collection[Door]) -> FloorPlan:
+    """Return a plan with open doors shut, and shut ones open.
+
+    Raises
+    ------
+    PlanError
+        Where the plan needs a door as it is, such as one to the outside.
+    """
+    material, thickness_m = _leaf(plan)
+
+    def changed(w: int, o: int, opening: Opening) -> Opening:
+        if Door(w, o) not in doors:
+            return opening
+        if opening.material is None:
+            return replace(opening, material=material, thickness_m=thickness_m)
+        return replace(opening, material=None, thickness_m=None)
+
+    walls = tuple(
+        replace(wall, openings=tuple(changed(w, o, each) for o, each in enumerate(wall.openings)))
+        for w, wall in enumerate(plan.walls)
+    )
+    return replace(plan, walls=walls)
+
+
+def _leaf(plan: FloorPlan) -> tuple[str, float | None]:
+    """Return what most shut doors of a plan are made of."""
+    leaves = Counter(
+        (opening.material, opening.thickness_m)
+        for wall in plan.walls
+        for opening in wall.openings
+        if opening.kind == "door" and opening.material is not None
+    )
+    for (material, thickness_m), _ in leaves.most_common(1):
+        assert material is not None
+        return material, thickness_m
+    return LEAF, LEAF_M
+
+
+NO_DOORS: frozenset[Door] = frozenset()
+
+
+class DoorSearch:
+    """The states of a plan's doors that readings tell.
+
+    Parameters
+    ----------
+    plan, survey, settings
+        The building, the readings, and how they are traced.
+    groups
+        (n,) which offset each reading has.
+    edition
+        Of the built-in materials, see `rssnav.scene_of`.
+    advance
+        Called after each trace of the whole survey.
+    """
+
+    def __init__(
+        self,
+        plan: FloorPlan,
+        survey: Survey,
+        settings: TraceSettings,
+        groups: Ints,
+        edition: str | None,
+        advance: Callable[[], None],
+    ) -> None:
+        self._plan, self._survey, self._settings = plan, survey, settings
+        self._groups, self._edition, self._advance = groups, edition, advance
+        self.doors = doors_of(plan)
+        self._levels: dict[frozenset[Door], Floats | None] = {}
+        self.traced = lru_cache(maxsize=KEPT)(self._traced)
+
+    def plan(self, changed: Collection[Door]) -> FloorPlan:
+        """Return the plan with some doors in their other state."""
+        return with_changed(self._plan, changed) if changed else self._plan
+
+    def scene(self, changed: Collection[Door]) -> Scene:
+        """Return its scene."""
+        return scene_of(self.plan(changed), self._edition)
+
+    def _traced(self, changed: frozenset[Door]) -> TracedSurvey:
+        return TracedSurvey.of(self.scene(changed), self._survey, self._settings)
+
+    def changed(self, fit: Bools) -> frozenset[Door]:
+        """Return the doors whose other state the readings `fit` (n,) tell."""
+        found = NO_DOORS
+        while True:
+            gains = {door: self._gain(found, door, fit) for door in self.doors}
+            best = max(gains, key=lambda door: gains[door], default=None)
+            if best is None or gains[best] < CLEAR:
+                return found
+            found = found ^ {best}
+
+    def states(self, changed: frozenset[Door]) -> tuple[DoorState, ...]:
+        """Say what all readings tell of each door, where some are in their other state."""
+        everything = np.ones(len(self._survey), dtype=bool)
+
+        def state(door: Door) -> DoorState:
+            wall = self._plan.walls[door.wall]
+            opening = wall.openings[door.opening]
+            place = wall.point_at(opening.offset_m + 0.5 * opening.width_m)
+            was_open = opening.material is None
+            evidence = -self._gain(changed, door, everything)
+            return DoorState(door, place, was_open, was_open ^ (door in changed), evidence)
+
+        return tuple(state(door) for door in self.doors)
+
+    def level_dbm(self, changed: frozenset[Door]) -> Floats | None:
+        """Predict all readings (n,) [dBm] without offsets; None where the plan is refused."""
+        if changed not in self._levels:
+            level = None
+            with suppress(PlanError):
+                level = traced_dbm(self.scene(changed), self._survey, self._settings)
+            self._levels[changed] = level
+            self._advance()
+        return self._levels[changed]
+
+    def _gain(self, changed: frozenset[Door], door: Door, fit: Bools) -> float:
+        """Logarithm of how much likelier readings become as a door changes its state.
+
+        -inf where readings have no path then, or doors cannot change together.
+        """
+        now, then = self.level_dbm(changed), self.level_dbm(changed ^ {door})
+        if now is None or then is None or not np.isfinite(then[np.isfinite(now)]).all():
+            return -np.inf
+        return self._loss(now, fit) - self._loss(then, fit)
+
+    def _loss(self, level: Floats, fit: Bools) -> float:
+        """Soft L1 loss, as materials are fitted with."""
+        predicted = Levels(level[fit], np.zeros((int(fit.sum()), 0)))
+        residual, *_ = residuals_db(self._survey.rows(fit), self._groups[fit], predicted)
+        return float(np.sum(np.sqrt(1.0 + (residual / NOISE_DB) ** 2) - 1.0))
