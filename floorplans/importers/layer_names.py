@@ -35,7 +35,7 @@ _WORDS: Lists[Kind] = (
         "anno", "hatch", "schraff", "defpoint", "viewport", "vport", "title", "ttlb", "demo ",
         "demol", "label", "iden ", "nplt ", "note ", "notes ", "void", "cote ", "cotes ", "cotat",
         "bemass", "beschrift", "acot", "skyl", "tremie", "tragaluz", "clarabo", "lucernari",
-        "overhead", "ovhd", "abov ", "above ",
+        "overhead", "ovhd", "abov ", "above ", "ecritur", "schrift", "escritur", "scritt",
     )),
     ("door", (
         "door", "tur ", "turen ", "turbl", "turrahm", "turzarg", "*haustur", "*innentur",
@@ -56,12 +56,13 @@ _WORDS: Lists[Kind] = (
     )),
     ("wall", (
         "wall", "wand", "*wand ", "waend", "*waende ", "*wande ", "*mauer ", "mauer", "mur",
-        "refend", "voile ", "voiles ", "cloison", "pared", "paret", "tabiqu", "tramez", "alvenar",
+        "refend", "voile ", "voiles ", "paroi", "maconner", "cloison", "pared", "paret", "tabiqu",
+        "cerramient", "medianer", "tramez", "divisori", "alvenar",
         "muur", "vagg", "vegg", "vaeg", "seina", "scian", "stena", "steny", "duvar", "стен",
         "partit", "column", "coluna", "colon ", "cols", "pillar", "pfeil", "stutz", "stuetz",
         "pilar", "pilast", "kolom", "kolon", "poteau",
     )),
-    ("window", ("glaz", "vitr", "verri")),
+    ("window", ("glaz", "vitr", "verri", "acristal", "cristaler", "vidrier")),
     ("ignore", (
         "sheet", "frame", "*rahmen ", "plankopf", "schriftf", "schriftk",
         "grid", "axis", "axe", "achs", "patt", "symb", "plant", "tree", "san ",

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from atomicfiles import atomic_write
 from floorplans.importers import DraftPlan, Imported, ImportRecord, import_page
+from floorplans.importers.layer_names import meaning_of
 from floorplans.repair.walls import REACH_M, Change
 from rssnav.cli.console import note, print_json, print_table, say
 from rssnav.cli.failures import print_error
@@ -64,12 +65,19 @@ def print_warnings(imported: ImportRecord) -> None:
 
 
 def _print_layer_option(imported: Imported) -> None:
-    unknown = [use for use in imported.layers if use.is_unknown]
+    """Propose to import the unknown layer with the longest lines."""
+    drawn = imported.original.layers if imported.original is not None else ()
+    length_of = {layer.name: layer.geometry.length for layer in drawn}
+    unknown = [
+        use.name
+        for use in imported.layers
+        if use.is_unknown and length_of.get(use.name, 1.0) and meaning_of(use.name).kind is None
+    ]
     if unknown:
-        largest = max(unknown, key=lambda use: use.n_objects)
+        longest = max(unknown, key=lambda name: length_of.get(name, 0.0))
         say(
             "import a layer with an unknown name as walls with, for example, "
-            f"--layer '{largest.name}=wall'"
+            f"--layer '{longest}=wall'"
         )
 
 

@@ -22,6 +22,8 @@ _REBATE_M = 0.06
 """How far the faces of a gap may step back [m]."""
 _STEP_M = 0.02
 _OVER_M = 0.01
+_MIN_HALF_M = 0.05
+"""Least half thickness of a wall at the end of a corridor [m]."""
 _MIN_FRACTION = 0.5
 _MIN_COMMON = 0.7
 
@@ -81,8 +83,20 @@ def _gap(local: BaseGeometry, width_m: float) -> Polygon | None:
     run = _run_nearest_middle(spanned & _level(sides, middle)) or run
     left, right = np.median(sides[run[0] : run[1]], axis=0)
     low, high = rows[run[0]] - _STEP_M / 2, rows[run[1] - 1] + _STEP_M / 2
-    low, high = _exact(local, (float(left), float(right)), (float(low), float(high)))
+    low, high = _at_the_end(*_exact(local, (float(left), float(right)), (float(low), float(high))))
     return box(left - _OVER_M, low, right + _OVER_M, high)
+
+
+def _at_the_end(low: float, high: float) -> tuple[float, float]:
+    """Limit a gap whose sides run on, as those of a corridor do, to the wall at its end.
+
+    An opening lies in the middle of that wall.
+    """
+    if low <= _STEP_M - _BESIDE_M and abs(high) < _BESIDE_M / 2:
+        return high - 2 * max(high, _MIN_HALF_M), high
+    if high >= _BESIDE_M - _STEP_M and abs(low) < _BESIDE_M / 2:
+        return low, low + 2 * max(-low, _MIN_HALF_M)
+    return low, high
 
 
 def _level(sides: NDArray[np.float64], middle: int) -> NDArray[np.bool_]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import hypot
+from math import dist, hypot
 
 import numpy as np
 import shapely
@@ -67,7 +67,19 @@ def door_swings(curves: Sequence[Curve]) -> list[Swing]:
     low_m, high_m = _LEAF_M
     swings = [c.swing for c in curves if c.swing is not None and low_m <= c.swing.radius <= high_m]
     largest_m = max((swing.radius for swing in swings), default=0.0)
-    return [swing for swing in swings if swing.radius >= _LEAF_FRACTION * largest_m]
+    large = [swing for swing in swings if swing.radius >= _LEAF_FRACTION * largest_m]
+    return [swing for swing in swings if swing in large or _is_second_leaf(swing, large)]
+
+
+def _is_second_leaf(swing: Swing, others: Sequence[Swing]) -> bool:
+    """Whether a small leaf shuts against a larger one, as in a door of two unequal leaves."""
+    return any(
+        dist(end, shut) <= _BESIDE_M
+        and abs(dist(swing.hinge, other.hinge) - swing.radius - other.radius) <= _BESIDE_M
+        for other in others
+        for end in swing.ends
+        for shut in other.ends
+    )
 
 
 def opening_of_swing(swing: Swing, curves: Sequence[Curve], walls: BaseGeometry) -> RawOpening:

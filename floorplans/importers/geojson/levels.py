@@ -36,7 +36,8 @@ def on_level(features: Sequence[Json], level: str | None) -> list[bool]:
     used = sorted({key for feature in features for key in levels_of(feature)}, key=_by_number)
     if level is None and len(used) <= 1:
         return [True] * len(features)
-    chosen = {key for key in used if level is not None and level.casefold() in names[key]}
+    wanted = None if level is None else level.casefold()
+    chosen = {key for key in used if wanted in map(str.casefold, names[key])}
     if not chosen:
         shown = ", ".join(_shown(key, names[key]) for key in used) or "none"
         problem = "there are several levels" if level is None else "there is no such level"
@@ -47,10 +48,10 @@ def on_level(features: Sequence[Json], level: str | None) -> list[bool]:
 
 
 def _names(features: Sequence[Json]) -> defaultdict[str, list[str]]:
-    """Names of each level in lower case, its key first."""
+    """Names of each level, its key first."""
     names: defaultdict[str, list[str]] = defaultdict(list)
     for key in {key for feature in features for key in levels_of(feature)}:
-        names[key].append(key.casefold())
+        names[key].append(key)
     for feature in features:
         if feature.get("feature_type") == "level":
             properties = properties_of(feature)
@@ -59,7 +60,7 @@ def _names(features: Sequence[Json]) -> defaultdict[str, list[str]]:
                 for key in ("short_name", "name", "ordinal")
                 for text in _texts(properties.get(key))
             ]
-            names[str(feature.get("id"))] += [text.casefold() for text in texts]
+            names[str(feature.get("id"))] += texts
     return names
 
 
@@ -78,5 +79,5 @@ def _by_number(key: str) -> tuple[float, str]:
 
 
 def _shown(key: str, names: Sequence[str]) -> str:
-    others = [name for name in names if name != key.casefold()]
+    others = [name for name in names if name != key]
     return f"{key} ({', '.join(others)})" if others else key

@@ -1,7 +1,9 @@
 """Reading of occupancy grids of ROS map_server, and of plain pictures with a scale.
 
 A pixel of value v is occupied with the likelihood (255 - v) / 255, or v / 255 if `negate` is set:
-above `occupied_thresh` it is occupied, below `free_thresh` free, and otherwise unknown.
+above `occupied_thresh` it is occupied, below `free_thresh` free, and otherwise unknown. Map savers
+of ROS 2 write unknown space with a value that their own default of `free_thresh` makes free; it is
+unknown in a picture that has only their three values.
 """
 
 from __future__ import annotations
@@ -26,6 +28,14 @@ MAX_YAML_BYTES = 65_536
 MODES = ("trinary", "scale", "raw")
 PICTURES = (".pgm", ".png")
 YAMLS = (".yaml", ".yml")
+
+_SAVED_VALUES = (0, 205, 254)
+_SAVED_UNKNOWN = 205
+"""Values that map savers write for occupied, unknown and free space."""
+_UNKNOWN_IS_FREE = (
+    "free_thresh = {:g} would make pixels of value {} free, with which map savers write unknown "
+    "space: they are unknown"
+)
 
 Mask = NDArray[np.bool_]
 
@@ -103,7 +113,12 @@ def read_grid(path: Path, scale_m: float | None) -> OccupancyGrid:
         picture = path
     if scale_m is not None:
         metadata = replace(metadata, resolution_m=scale_m)
-    occupied, free = _classified(_read_picture(picture), metadata)
+    pixels = _read_picture(picture)
+    occupied, free = _classified(pixels, metadata)
+    unknown = _saved_as_unknown(pixels, metadata) & free
+    if unknown.any():
+        free &= ~unknown
+        notes = (*notes, _UNKNOWN_IS_FREE.format(metadata.free_thresh, _SAVED_UNKNOWN))
     if not occupied.any():
         raise PlanError("no pixel is occupied, so there is no wall", origin=str(picture))
     return OccupancyGrid(occupied[::-1], free[::-1], metadata, notes)
@@ -221,6 +236,15 @@ def _read_picture(path: Path) -> Image.Image:
     except (OSError, ValueError, SyntaxError, IndexError, OverflowError) as error:
         raise PlanError(f"not a picture that can be read: {error}", origin=str(path)) from error
     return picture
+
+
+def _saved_as_unknown(picture: Image.Image, metadata: MapMetadata) -> Mask:
+    """Pixels with the grey of unknown space in a picture of the three values of the map saver."""
+    values = np.asarray(picture.convert("L"))
+    is_saved = metadata.mode == "trinary" and not metadata.negate
+    if not is_saved or not np.isin(values, _SAVED_VALUES).all():
+        return np.zeros(values.shape, dtype=np.bool_)
+    return values == _SAVED_UNKNOWN
 
 
 def _classified(picture: Image.Image, metadata: MapMetadata) -> tuple[Mask, Mask]:

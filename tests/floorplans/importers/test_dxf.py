@@ -157,6 +157,39 @@ def test_lines_of_windows_are_openings_in_walls_and_panes_otherwise(tmp_path: Pa
     assert [o.width_m for _, o in openings(plan) if o.kind == "window"] == pytest.approx([1.5])
 
 
+@pytest.mark.parametrize("angle", [0, 33])
+def test_a_door_of_two_unequal_leaves_is_one_as_wide_as_both(tmp_path: Path, angle: float):
+    doc = draw.new()
+    block = doc.blocks.new("STOREY")
+    draw.add_rings(block, [*draw.bodies()[1:], draw.rectangle(0, 0, 0.4, 0.3)], "WALL")
+    for hinge, radius, begin in ((0.4, 1.2, 0), (2.0, 0.4, 90)):
+        attributes = {"layer": "DOOR"}
+        ends = (1000 * hinge, 300), (1000 * hinge, 300 + 1000 * radius)
+        block.add_line(*ends, dxfattribs=attributes)
+        block.add_arc(ends[0], 1000 * radius, begin, begin + 90, dxfattribs=attributes)
+    doc.modelspace().add_blockref("STOREY", (0, 0), dxfattribs={"rotation": angle})
+    plan = imported(doc, tmp_path).plan
+    (door,) = (opening for _, opening in openings(plan) if opening.kind == "door")
+    assert door.width_m == pytest.approx(1.6, abs=0.02)
+
+
+@pytest.mark.parametrize("angle", [0, 33])
+def test_glazing_at_the_end_of_a_corridor_is_no_deeper_than_a_wall(tmp_path: Path, angle: float):
+    doc = draw.new()
+    block = doc.blocks.new("STOREY")
+    rings = [(0, 0, 12, 0.2), (0, 5.8, 12, 6), (0, 0.2, 0.2, 2), (0, 4, 0.2, 5.8)]
+    rings += [(11.8, 0.2, 12, 5.8), (0.1, 2, 11.8, 2.15), (0.1, 3.85, 11.8, 4)]
+    draw.add_rings(block, [draw.rectangle(*ring) for ring in rings], "WALL")
+    for x in (0.05, 0.1, 0.15):
+        draw.add_lines(block, [((x, 2.15), (x, 3.85))], "GLAZING")
+    doc.modelspace().add_blockref("STOREY", (0, 0), dxfattribs={"rotation": angle})
+    plan = imported(doc, tmp_path).plan
+    assert max(wall.thickness_m for wall in plan.walls) == pytest.approx(0.2, abs=0.01)
+    (pane,) = (opening for _, opening in openings(plan) if opening.kind == "window")
+    assert pane.width_m == pytest.approx(1.7, abs=0.02)
+    assert plan.outline.area == pytest.approx(11.8 * 5.8, rel=0.01)
+
+
 def test_curved_glazing_beside_curved_walls_loses_nothing(tmp_path: Path):
     doc = draw.new()
     space = doc.modelspace()
@@ -435,6 +468,10 @@ def test_layers_that_are_off_are_left_out(tmp_path: Path):
         ("floor_opening", Meaning("ignore")),
         ("roof_opening", Meaning("ignore")),
         ("ShaftOpening", Meaning("ignore")),
+        ("GO_PAROI_MOULEE", Meaning("wall")),
+        ("CERRAMIENTO EXTERIOR", Meaning("wall")),
+        ("ACRISTALAMIENTO", Meaning("window")),
+        ("Écriture", Meaning("ignore")),
         ("AIR", Meaning(None)),
         ("DoorText", Meaning("ignore")),
         ("A-FURN", Meaning("ignore")),

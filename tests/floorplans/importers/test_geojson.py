@@ -235,7 +235,7 @@ def imdf_archive(path, files):
 
 def test_imdf_archive_has_levels_to_choose_from(tmp_path) -> None:
     path = imdf_archive(tmp_path / "venue.zip", imdf_files())
-    with pytest.raises(PlanError, match=r"several levels.*L-1 \(ground, 0\), L-2 \(upper, 1\)"):
+    with pytest.raises(PlanError, match=r"several levels.*L-1 \(Ground, 0\), L-2 \(Upper, 1\)"):
         import_plan(path)
     with pytest.raises(PlanError, match=r"no such level.*L-1"):
         import_plan(path, ImportOptions(level="Cellar"))

@@ -167,6 +167,18 @@ def test_the_picture_shown_is_the_known_space_in_its_place(angle: float, tmp_pat
     assert corners.mean(axis=0) == pytest.approx(plan.outline.centroid.coords[0], abs=0.03)
 
 
+def test_grey_of_a_map_saver_is_unknown_whatever_its_threshold(tmp_path) -> None:
+    text = YAML.replace("free_thresh: 0.196", "free_thresh: 0.25")
+    grid = read_grid(write_map(tmp_path, room_values(), text=text), None)
+    assert (grid.free == (room_values()[::-1] == 254)).all()
+    assert any("pixels of value 205 free" in note for note in grid.notes)
+    shaded = room_values()
+    shaded[0, 0] = 200  # a scan of another program, whose thresholds hold
+    grid = read_grid(write_map(tmp_path, shaded, text=text), None)
+    assert (grid.free == (shaded[::-1] >= 200)).all()
+    assert grid.notes == ()
+
+
 def test_a_plain_picture_needs_a_scale(tmp_path) -> None:
     Image.fromarray(np.where(room_values() == 0, 0, 255).astype(np.uint8)).save(tmp_path / "a.png")
     with pytest.raises(PlanError, match=r"no a.yaml beside .*give it, such as 0.05 m"):
