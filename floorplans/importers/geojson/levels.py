@@ -36,8 +36,7 @@ def on_level(features: Sequence[Json], level: str | None) -> list[bool]:
     used = sorted({key for feature in features for key in levels_of(feature)}, key=_by_number)
     if level is None and len(used) <= 1:
         return [True] * len(features)
-    wanted = None if level is None else level.casefold()
-    chosen = {key for key in used if wanted in map(str.casefold, names[key])}
+    chosen = {key for key in used if level is not None and _is_called(level, names[key])}
     if not chosen:
         shown = ", ".join(_shown(key, names[key]) for key in used) or "none"
         problem = "there are several levels" if level is None else "there is no such level"
@@ -45,6 +44,11 @@ def on_level(features: Sequence[Json], level: str | None) -> list[bool]:
     if len(chosen) > 1:
         raise PlanError(f"several levels are called this: {', '.join(chosen)}", ("level",), level)
     return [not levels_of(feature) or bool(levels_of(feature) & chosen) for feature in features]
+
+
+def _is_called(level: str, names: Sequence[str]) -> bool:
+    """Whether a level has a name, whatever the case of its letters."""
+    return level.casefold() in {name.casefold() for name in names}
 
 
 def _names(features: Sequence[Json]) -> defaultdict[str, list[str]]:
