@@ -91,6 +91,10 @@ COMMANDS = {
         ("experiments",),
         "Regenerate figures, tables and report from the maps and training of an earlier run.",
     ),
+    "benchmark": Entry(
+        ("benchmark",),
+        "Fly policies in generated buildings that they have not seen, and score them.",
+    ),
     "doctor": Entry(
         ("doctor",),
         "Print versions, threads and the state of the compiled kernels, and run a self-test.",
