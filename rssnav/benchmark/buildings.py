@@ -1,10 +1,11 @@
-"""The buildings of the benchmark: generated, split by building, each with three transmitters."""
+"""The buildings of the benchmark: generated and split by building, the paper's, and one's own."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from hashlib import sha256
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -14,25 +15,26 @@ from numpy.typing import NDArray
 
 import floorplans
 from floorplans import FloorPlan
-from raytrace import Grid, Transmitter
+from raytrace import Grid, TraceConfig, Transmitter
 from rssnav.arguments import require
+from rssnav.benchmark.frozen import FINGERPRINTS, Split
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
-from rssnav.missions import Layout, Mission, ReadingAbove, Task
+from rssnav.missions import Layout, Mission, ReadingAbove, Task, spread_places
 from rssnav.missions.layout import WorldError
-from rssnav.missions.places import mission_of_fields
+from rssnav.missions.places import mission_of_fields, reachable_layout
 from rssnav.policies import Hypotheses
-from rssnav.policies.hypotheses import NO_WAY
-from rssnav.presets import PRESETS
-from rssnav.progress import Progress
+from rssnav.policies.hypotheses import COARSE, NO_WAY
+from rssnav.presets import PRESETS, PresetName
 from rssnav.transmitter_maps import make_transmitter_maps
 
-Split = Literal["train", "validation", "test"]
-SPLITS: tuple[Split, ...] = get_args(Split)
-N_BUILDINGS: dict[Split, int] = {"train": 200, "validation": 50, "test": 50}
-"""Buildings of each split."""
+Site = Literal["train", "validation", "test", "paper", "own"]
+"""Where a building comes from."""
 
 PLACES = 3
-"""Transmitters of each building."""
+"""Transmitters of a generated or own building."""
+
+PAPER_PLACES = 20
+"""Transmitters of a building of the paper, its own first."""
 
 GOAL = ReadingAbove(-21.0)
 """Where the transmitter is found: -21 dBm is free space at 2 m."""
@@ -42,10 +44,11 @@ LEAST_STEPS = 10
 
 _KINDS = ("office", "hotel", "school")
 _AREA_M2 = (300.0, 700.0)
-_SPLIT_SEED: dict[Split, int] = {"train": 0, "validation": 1_000_000, "test": 2_000_000}
+_FIRST_SEED: dict[Split, int] = {"train": 0, "validation": 1_000_000, "test": 2_000_000}
 _LEAST_PART = 0.5
 _HEIGHT_M = 1.2
 _BESIDE_M = 0.2  # at most this far from a cell's centre along each axis
+_SEARCH_LIMITS: dict[PresetName, TraceConfig] = {"paper": TraceConfig(2, 1, 0), "building": COARSE}
 
 
 @dataclass(frozen=True)
@@ -54,35 +57,35 @@ class Building:
 
     Attributes
     ----------
-    split : {"train", "validation", "test"}
+    site : {"train", "validation", "test", "paper", "own"}
     number : int
-        From 0, within the split.
+        From 0, within the site.
     plan : FloorPlan
     layout : Layout
         The largest part of its cells that hangs together.
     places : tuple of (float, float, float)
         Transmitters [m].
+    preset : {"building", "paper"}
+        Antennas and limits of the traces.
     """
 
-    split: Split
+    site: Site
     number: int
     plan: FloorPlan
     layout: Layout
     places: tuple[tuple[float, float, float], ...]
+    preset: PresetName = "building"
 
     @property
     def name(self) -> str:
         """Name in tables and files."""
-        return f"{self.split}-{self.number:03d}"
+        return f"{self.site}-{self.number:03d}"
 
     @cached_property
-    def senders(self) -> dict[str, Transmitter]:
-        """Transmitters by name."""
-        antenna = PRESETS["building"].antenna
-        return {
-            f"{k}": Transmitter(position=place, antenna=antenna)
-            for k, place in enumerate(self.places)
-        }
+    def fingerprint(self) -> str:
+        """Hash of plan and places."""
+        places = ";".join(",".join(f"{x:.9f}" for x in place) for place in self.places)
+        return sha256(f"{self.plan.sha256} {places}".encode()).hexdigest()
 
     @cached_property
     def hypotheses(self) -> Hypotheses:
@@ -90,68 +93,113 @@ class Building:
 
         Tracing them takes some seconds.
         """
-        return Hypotheses.of_plan(self.plan, self.layout)
+        return Hypotheses.of_plan(
+            self.plan,
+            self.layout,
+            config=_SEARCH_LIMITS[self.preset],
+            antenna=PRESETS[self.preset].antenna,
+            threads=1,
+        )
 
-    def mission(
-        self,
-        folder: Path | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> Mission:
+    def mission(self, folder: Path | None = None) -> Mission:
         """Mission with a mode for each place, which is drawn for each episode.
 
         Flights begin in any cell that is far enough from all places. The maps are kept in a folder,
         if one is given.
         """
+        preset = PRESETS[self.preset]
+        senders = {
+            f"{k}": Transmitter(position=place, antenna=preset.antenna)
+            for k, place in enumerate(self.places)
+        }
         maps = make_transmitter_maps(
             self.plan,
-            self.senders,
+            senders,
             None if folder is None else folder / f"{self.name}.h5",
-            config=PRESETS["building"].config,
-            receive_antenna=PRESETS["building"].antenna,
-            threads=threads,
-            progress=progress,
+            config=preset.config,
+            receive_antenna=preset.antenna,
+            threads=1,
         )
-        rss_dbm = np.stack([self.layout.on_cells(maps[name].rss_dbm) for name in self.senders])
-        mission = mission_of_fields(self.plan, (self.layout,), rss_dbm, self.places)
+        rss_dbm = np.stack([self.layout.on_cells(maps[name].rss_dbm) for name in senders])
+        everywhere = np.arange(self.layout.n_states)
+        mission = mission_of_fields(
+            self.plan, (self.layout,), rss_dbm, self.places, starts=everywhere
+        )
         hops = Hypotheses.of_mission(mission, Task(GOAL)).hops
-        if hops.max() >= NO_WAY:
-            raise WorldError(f"building {self.name}: a transmitter cannot be found from its cells")
-        return mission.from_starts(np.flatnonzero(hops.min(axis=1) >= LEAST_STEPS))
+        far = np.flatnonzero(hops.min(axis=1) >= LEAST_STEPS)
+        if hops.max() >= NO_WAY or not far.size:
+            raise WorldError(
+                f"building {self.name}: from no cell each transmitter is found, and in "
+                f"{LEAST_STEPS} steps at least; a larger building is needed"
+            )
+        return mission.from_starts(far)
 
 
-def buildings(split: Split, count: int | None = None) -> Iterator[Building]:
-    """Yield the buildings of a split; the same on any machine.
+def generated(split: Split, count: int) -> Iterator[Building]:
+    """Yield the first buildings of a split; the same on any machine.
 
     Seeds are tried in order; a plan counts if one step after another reaches at least half of the
     cells in its outline.
+
+    Raises
+    ------
+    ValueError
+        For an unknown split or too many buildings.
+    WorldError
+        When a building is not the one of this version of the benchmark.
     """
-    require(split in SPLITS, "split", split, " or ".join(map(repr, SPLITS)))
-    most = N_BUILDINGS[split]
-    count = most if count is None else count
+    require(split in get_args(Split), "split", split, " or ".join(map(repr, get_args(Split))))
+    most = len(FINGERPRINTS[split])
     require(1 <= count <= most, "count", count, f"1 to {most}")
-    seed, number = _SPLIT_SEED[split], 0
+    for building in unchecked(split, count):
+        if not building.fingerprint.startswith(FINGERPRINTS[split][building.number]):
+            raise WorldError(
+                f"building {building.name} is not that of the benchmark: plans are generated in "
+                "another way than in the version of rssnav that froze it"
+            )
+        yield building
+
+
+def unchecked(split: Split, count: int) -> Iterator[Building]:
+    """Yield buildings of a split without comparing them with the frozen ones."""
+    seed, number = _FIRST_SEED[split], 0
     while number < count:
-        building = _building(split, number, seed)
+        building = _generate(split, number, seed)
         seed += 1
         if building is not None:
             number += 1
             yield building
 
 
-def _building(split: Split, number: int, seed: int) -> Building | None:
+def paper() -> Iterator[Building]:
+    """Yield the two buildings of the paper, with its transmitter and others spread over them."""
+    for number, name in enumerate(("scenario1", "scenario2")):
+        plan = floorplans.load(name)
+        places = spread_places(plan, PAPER_PLACES)
+        yield Building("paper", number, plan, reachable_layout(plan), places, "paper")
+
+
+def own(plans: tuple[Path, ...]) -> Iterator[Building]:
+    """Yield buildings of plan files, with transmitters drawn as in generated ones."""
+    for number, path in enumerate(plans):
+        plan = floorplans.load(path)
+        layout = _largest_part(plan)
+        places = _draw_places(plan, layout, np.random.default_rng(0))
+        yield Building("own", number, plan, layout, places)
+
+
+def _generate(split: Split, number: int, seed: int) -> Building | None:
     generator = np.random.default_rng(seed)
     kind, area_m2 = _KINDS[number % len(_KINDS)], generator.uniform(*_AREA_M2)
     plan = floorplans.generate(kind, seed, area_m2=area_m2, furniture=False, n_transmitters=0)
-    layout = Layout.of_plan(plan, Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M))
-    kept = _largest_part(layout)
-    if kept.size < _LEAST_PART * layout.n_states:
+    whole = Layout.of_plan(plan, Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M))
+    layout = _largest_part(plan, whole)
+    if layout.n_states < _LEAST_PART * whole.n_states:
         return None
-    layout = layout.part(kept)
-    return Building(split, number, plan, layout, _places(plan, layout, generator))
+    return Building(split, number, plan, layout, _draw_places(plan, layout, generator))
 
 
-def _places(
+def _draw_places(
     plan: FloorPlan, layout: Layout, generator: np.random.Generator
 ) -> tuple[tuple[float, float, float], ...]:
     """Draw places of transmitters, each in sight of the centre of its cell."""
@@ -167,12 +215,14 @@ def _places(
     return tuple(places)
 
 
-def _largest_part(layout: Layout) -> NDArray[np.int64]:
+def _largest_part(plan: FloorPlan, whole: Layout | None = None) -> Layout:
     """Cells of the largest part that hangs together, in order."""
-    left = np.ones(layout.n_states, dtype=np.bool_)
-    largest = np.empty(0, dtype=np.int64)
+    if whole is None:
+        whole = Layout.of_plan(plan, Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M))
+    left = np.ones(whole.n_states, dtype=np.bool_)
+    largest: NDArray[np.int64] = np.empty(0, dtype=np.int64)
     while left.any():
-        part = layout.reachable(int(np.argmax(left)))
+        part = whole.reachable(int(np.argmax(left)))
         left[part] = False
         largest = part if part.size > largest.size else largest
-    return np.sort(largest)
+    return whole.part(np.sort(largest))

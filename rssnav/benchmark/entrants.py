@@ -5,43 +5,44 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from importlib import import_module
-from typing import Literal, get_args
+from typing import Any, Literal, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rssnav.arguments import require
 from rssnav.benchmark.buildings import Building
-from rssnav.missions import HOVER, Layout, Policy, RandomPolicy, Seen
+from rssnav.benchmark.protocol import Condition
+from rssnav.missions import HOVER, Layout, Mission, Policy, RandomPolicy, Seen, plan_mission
 from rssnav.policies import (
     DistanceSearch,
     FrontierSearch,
     GaussianProcessSearch,
     Hypotheses,
     Infotaxis,
+    Likelihood,
     MapParticleFilter,
     MapSearch,
     Qmdp,
 )
 
-Knows = Literal["RSS", "plan", "maps"]
+Knows = Literal["RSS", "plan", "maps", "places", "world"]
+"""Tracks: what a policy is told beside the task, its own cell and the size of the building."""
 
 
 @dataclass(frozen=True, eq=False)
 class Briefing:
-    """What a policy is told of a building before it flies there.
+    """What a policy is told before it flies in a building.
 
-    Parameters
-    ----------
-    building : Building
-        The building; a policy reads the properties below, as far as its track allows.
-    knows : {"RSS", "plan", "maps"}
-        Its track.
+    A policy reads `condition`, `layout` and, as far as its track allows, `hypotheses` and `world`.
     """
 
-    _building: Building = field(repr=False)
+    condition: Condition
     knows: Knows
+    _building: Building = field(repr=False)
+    _mission: Mission = field(repr=False)
 
     @cached_property
     def layout(self) -> Layout:
@@ -56,10 +57,22 @@ class Briefing:
 
     @cached_property
     def hypotheses(self) -> Hypotheses:
-        """Maps of a transmitter in every cell or a step from it, if maps are known."""
-        if self.knows != "maps":
-            raise ValueError(f"hypotheses: a policy of the track {self.knows!r} has no maps")
-        return self._building.hypotheses
+        """Places of the transmitter with maps: a step from each other, or where it truly may be.
+
+        The track "maps" has coarse maps of places all over the building; "places" has the true
+        places, their true maps, and how the transmitter moves among them.
+        """
+        if self.knows == "maps":
+            return self._building.hypotheses
+        if self.knows == "places":
+            return Hypotheses.of_mission(self.world_of("places"), self.condition.task)
+        raise ValueError(f"hypotheses: a policy of the track {self.knows!r} has no maps")
+
+    def world_of(self, track: Knows) -> Mission:
+        """Return the mission itself, to a policy of this track."""
+        if self.knows != track:
+            raise ValueError(f"world: a policy of the track {self.knows!r} must not see it")
+        return self.condition.world(self._mission)
 
 
 @dataclass(frozen=True)
@@ -70,10 +83,10 @@ class Entrant:
     ----------
     name : str
         In tables and files.
-    knows : {"RSS", "plan", "maps"}
+    knows : {"RSS", "plan", "maps", "places", "world"}
         Track.
     make : callable
-        Policy for a building, from a `Briefing`.
+        Policy for a building and task, from a `Briefing`.
     """
 
     name: str
@@ -81,30 +94,78 @@ class Entrant:
     make: Callable[[Briefing], Policy]
 
 
+class Oracle:
+    """Value iteration with the transmitter in sight: the fewest steps, or the least energy.
+
+    In a cell of the goal that readings did not confirm it flies on to the highest RSS around.
+    """
+
+    def __init__(self, minimise: Literal["steps", "energy"], briefing: Briefing) -> None:
+        self._mission = briefing.world_of("world")
+        plan = plan_mission(self._mission, briefing.condition.task, minimise)
+        self.name = plan.policy.name
+        self._q = plan.policy.q.reshape(*plan.cost.shape, 8)
+        self._goal = briefing.condition.task.goal.cells(self._mission)
+
+    def begin(self, generator: np.random.Generator) -> None:
+        """Nothing is kept from flight to flight."""
+
+    def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
+        """Return the best action."""
+        mode, cell = observation.mode, observation.cell
+        if not self._goal[mode, cell]:
+            heading = observation.heading if self._q.shape[0] > 1 else 0
+            return int(np.argmax(np.where(mask, self._q[heading, mode, cell], -np.inf)))
+        there = np.append(self._mission.layout.next_state[cell], cell)  # HOVER is the last action
+        rss_dbm = np.where(there >= 0, self._mission.rss_dbm[mode, there], -np.inf)
+        return int(np.argmax(rss_dbm))
+
+
+def _random(_: Briefing) -> Policy:
+    return RandomPolicy()
+
+
+def _on_layout(make: Callable[..., Policy], briefing: Briefing, **settings: Any) -> Policy:
+    return make(briefing.layout, **settings)
+
+
+def _on_maps(make: Callable[..., Policy], briefing: Briefing, **settings: Any) -> Policy:
+    return make(briefing.hypotheses, **settings)
+
+
+def _on_places(make: Callable[..., Policy], briefing: Briefing) -> Policy:
+    exact = Likelihood(sigma_db=max(briefing.condition.sigma_db, 1.0), temper=1.0)
+    return make(briefing.hypotheses, likelihood=exact)
+
+
+_LAW = partial(_on_layout, DistanceSearch)
+_THOMPSON = {"targets": "thompson"}
+
 ENTRANTS = (
-    Entrant("random walk", "RSS", lambda _: RandomPolicy()),
-    Entrant("frontier search", "RSS", lambda b: FrontierSearch(b.layout)),
-    Entrant("Gaussian process", "RSS", lambda b: GaussianProcessSearch(b.layout)),
+    Entrant("random walk", "RSS", _random),
+    Entrant("frontier search", "RSS", partial(_on_layout, FrontierSearch)),
     Entrant(
-        "distance law, Thompson",
-        "RSS",
-        lambda b: DistanceSearch(b.layout, targets="thompson", steps_to_draw=40),
+        "Gaussian process", "RSS", partial(_on_layout, GaussianProcessSearch, steps_to_choose=1)
     ),
-    Entrant("distance law, greedy", "RSS", lambda b: DistanceSearch(b.layout)),
-    Entrant(
-        "distance law, greedy, plan", "plan", lambda b: DistanceSearch(b.layout, plan_known=True)
-    ),
-    Entrant("particle filter", "maps", lambda b: MapParticleFilter(b.hypotheses)),
-    Entrant("maps, Thompson", "maps", lambda b: MapSearch(b.hypotheses, targets="thompson")),
-    Entrant("maps, greedy", "maps", lambda b: MapSearch(b.hypotheses)),
-    Entrant("QMDP", "maps", lambda b: Qmdp(b.hypotheses)),
-    Entrant("infotaxis", "maps", lambda b: Infotaxis(b.hypotheses, space_aware=False)),
-    Entrant("space-aware infotaxis", "maps", lambda b: Infotaxis(b.hypotheses)),
+    Entrant("distance law, Thompson", "RSS", partial(_LAW, steps_to_draw=40, **_THOMPSON)),
+    Entrant("distance law, greedy", "RSS", partial(_LAW, steps_to_draw=1)),
+    Entrant("distance law, greedy", "plan", partial(_LAW, steps_to_draw=1, plan_known=True)),
+    Entrant("particle filter", "maps", partial(_on_maps, MapParticleFilter)),
+    Entrant("maps, Thompson", "maps", partial(_on_maps, MapSearch, **_THOMPSON)),
+    Entrant("maps, greedy", "maps", partial(_on_maps, MapSearch)),
+    Entrant("QMDP", "maps", partial(_on_maps, Qmdp)),
+    Entrant("infotaxis", "maps", partial(_on_maps, Infotaxis, space_aware=False)),
+    Entrant("space-aware infotaxis", "maps", partial(_on_maps, Infotaxis)),
+    Entrant("maps, greedy", "places", partial(_on_places, MapSearch)),
+    Entrant("QMDP", "places", partial(_on_places, Qmdp)),
+    Entrant("oracle, fewest steps", "world", partial(Oracle, "steps")),
+    Entrant("oracle, least energy", "world", partial(Oracle, "energy")),
 )
-"""The policies that come with the benchmark."""
+"""The policies that come with the benchmark. Their settings were chosen in buildings of the split
+"train"."""
 
 
-def entrant_of(text: str, knows: str) -> Entrant:
+def entrant_of(text: str, knows: str, name: str | None = None) -> Entrant:
     """Entrant of a function ``module:function`` that makes a policy from a `Briefing`.
 
     Raises
@@ -112,20 +173,18 @@ def entrant_of(text: str, knows: str) -> Entrant:
     ValueError
         Unless there is such a function and track.
     """
-    if knows not in get_args(Knows):
-        raise ValueError(f"track: {knows!r}; expected one of {', '.join(get_args(Knows))}")
-    module, _, name = text.partition(":")
+    require(knows in get_args(Knows), "track", knows, ", ".join(map(repr, get_args(Knows))))
+    module, _, function = text.partition(":")
     if "" not in sys.path:
         sys.path.insert(0, "")  # modules of the current folder
     try:
-        make = getattr(import_module(module), name)
+        make = getattr(import_module(module), function)
     except (ImportError, AttributeError, ValueError) as error:
         raise ValueError(
             f"policy {text!r}: {error}; expected module:function with a function that takes a "
             "Briefing and returns a policy"
         ) from error
-    track = next(track for track in get_args(Knows) if track == knows)
-    return Entrant(name, track, make)
+    return Entrant(name or function, cast(Knows, knows), make)
 
 
 class Guarded:

@@ -1,14 +1,19 @@
 """What is flown: frozen within a version, so that results of different people compare.
 
 A change of anything here, of the buildings or of the stepping kernel's flights raises
-`BENCHMARK_VERSION`.
+`BENCHMARK_VERSION`. `docs/benchmark.md` states the protocol in words.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
-from rssnav.benchmark.buildings import GOAL, N_BUILDINGS, Split
+from rssnav.arguments import require
+from rssnav.benchmark.buildings import GOAL, Site
+from rssnav.benchmark.frozen import FINGERPRINTS, Split
 from rssnav.discrete_states import Fluctuation
 from rssnav.missions import Mission, ModeProcess, MultirotorEnergy, Observation, Task
 
@@ -17,8 +22,12 @@ BENCHMARK_VERSION = 1
 MAX_STEPS = 400
 """Seconds after which a flight ends without success."""
 
-CONFIRMATIONS = 16
-"""Readings that confirm the goal where readings fluctuate, one a second."""
+CONFIRMATIONS, ERROR = 64, 0.002
+"""Most readings of the sequential test that confirms the goal, one a second, where readings
+fluctuate, and the probability of a false alarm when a cell is visited."""
+
+BATTERY_KJ = 8.0
+"""Energy after which a flight ends in the task "battery" [kJ]."""
 
 
 @dataclass(frozen=True)
@@ -33,22 +42,38 @@ class Condition:
         Standard deviation of the fluctuation of readings, independent from second to second [dB].
     jump_probability : float
         Probability that the transmitter is drawn anew among the building's places, per second.
+    battery_kj : float
+        Energy after which a flight ends without success [kJ].
     """
 
     name: str
     sigma_db: float = 0.0
     jump_probability: float = 0.0
+    battery_kj: float = math.inf
 
     @property
     def task(self) -> Task:
         """Goal, limits, and the energy that is reported."""
-        goal = replace(GOAL, confirmations=CONFIRMATIONS) if self.sigma_db > 0.0 else GOAL
-        return Task(goal, "none", energy=MultirotorEnergy(), max_steps=MAX_STEPS)
+        goal = GOAL
+        if self.sigma_db > 0.0:
+            goal = replace(GOAL, confirmations=CONFIRMATIONS, error=ERROR)
+        return Task(
+            goal,
+            "none",
+            energy=MultirotorEnergy(),
+            battery_kj=self.battery_kj,
+            max_steps=MAX_STEPS,
+        )
 
-    @property
-    def observation(self) -> Observation:
-        """RSS and the UAV's own cell."""
-        return Observation(None, cell=True, fluctuation=Fluctuation(self.sigma_db))
+    def observation(self, *, world_seen: bool = False) -> Observation:
+        """RSS and the UAV's own cell; for oracles also heading and place of the transmitter."""
+        return Observation(
+            None,
+            cell=True,
+            heading=world_seen,
+            mode=world_seen,
+            fluctuation=Fluctuation(self.sigma_db),
+        )
 
     def world(self, mission: Mission) -> Mission:
         """Mission whose transmitter moves as in this task."""
@@ -62,6 +87,7 @@ CONDITIONS = (
     Condition("2 dB", sigma_db=2.0),
     Condition("4 dB", sigma_db=4.0),
     Condition("jumps", jump_probability=0.01),
+    Condition("battery", battery_kj=BATTERY_KJ),
 )
 """The tasks."""
 
@@ -73,20 +99,60 @@ class Extent:
     Parameters
     ----------
     split : {"train", "validation", "test"}
-        Buildings.
-    buildings : int
+        Of the generated buildings.
+    generated : int
         How many of them, the first.
+    paper : bool
+        Whether the paper's two buildings are flown in, too.
+    plans : tuple of str
+        Files of further plans.
     seeds : int
         Seeds, from 0.
-    flights : int
-        Flights of each seed in each building and task.
     """
 
     split: Split = "test"
-    buildings: int = N_BUILDINGS["test"]
+    generated: int = 50
+    paper: bool = True
+    plans: tuple[str, ...] = ()
     seeds: int = 10
-    flights: int = 3
+
+    @property
+    def buildings(self) -> int:
+        """Number of buildings."""
+        return self.generated + 2 * self.paper + len(self.plans)
 
 
 FULL = Extent()
-QUICK = Extent(buildings=6, seeds=2)
+QUICK = Extent(generated=6, paper=False, seeds=2)
+
+
+def extent_of(whole: Extent, split: str, generated: int | None, plans: Sequence[Path]) -> Extent:
+    """Part of an extent, and further plans.
+
+    Parameters
+    ----------
+    whole : Extent
+        `FULL` or `QUICK`.
+    split : str
+        Another split.
+    generated : int or None
+        Another number of generated buildings.
+    plans : sequence of Path
+        Files of further plans.
+
+    Raises
+    ------
+    ValueError
+        For an unknown split, or more buildings than it has.
+    """
+    require(split in FINGERPRINTS, "split", split, " or ".join(FINGERPRINTS))
+    known: Split = next(name for name in FINGERPRINTS if name == split)
+    most = len(FINGERPRINTS[known])
+    count = min(whole.generated, most) if generated is None else generated
+    require(1 <= count <= most, "buildings", count, f"1 to {most} in the split {split}")
+    return replace(whole, split=known, generated=count, plans=tuple(map(str, plans)))
+
+
+def flights_of_a_seed(site: Site) -> int:
+    """Flights of each seed in each building and task."""
+    return 5 if site == "paper" else 3

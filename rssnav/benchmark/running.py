@@ -3,19 +3,34 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
+import os
 import re
+import signal
+import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from atomicfiles import atomic_write
-from rssnav.benchmark.buildings import Building, buildings
+from raytrace.threads import n_threads
+from rssnav.benchmark.buildings import Building, Site, generated, own, paper
 from rssnav.benchmark.entrants import Briefing, Entrant, Guarded
-from rssnav.benchmark.protocol import BENCHMARK_VERSION, CONDITIONS, Condition, Extent
+from rssnav.benchmark.protocol import (
+    BENCHMARK_VERSION,
+    CONDITIONS,
+    Condition,
+    Extent,
+    flights_of_a_seed,
+)
 from rssnav.missions import Flights, Mission, fly
 from rssnav.policies import Hypotheses
 
@@ -28,12 +43,17 @@ class Record:
 
     Attributes
     ----------
-    entrant, knows, condition, building : str
-        Who, its track, which task, where.
+    entrant, knows, condition : str
+        Who, its track, which task.
+    site : {"train", "validation", "test", "paper", "own"}
+        Where the building comes from.
+    building : str
+        Its name.
     found, false_alarm : list of bool
         As of `rssnav.missions.Flights`.
-    steps, shortest, turns : list of int
-        Seconds flown, fewest that were possible at the begin, changes of direction.
+    steps, moves, shortest, turns : list of int
+        Seconds flown, steps that led to another cell, fewest of them that were possible, changes of
+        direction.
     energy_kj : list of float
         Energy [kJ].
     collisions : int
@@ -45,10 +65,12 @@ class Record:
     entrant: str
     knows: str
     condition: str
+    site: Site
     building: str
     found: list[bool]
     false_alarm: list[bool]
     steps: list[int]
+    moves: list[int]
     shortest: list[int]
     turns: list[int]
     energy_kj: list[float]
@@ -70,55 +92,111 @@ def run(
     Parameters
     ----------
     entrants : sequence of Entrant
-        Who flies.
+        Who flies; what makes them can be pickled.
     extent : Extent
         How much.
     folder : Path
         Where maps and finished flights are kept.
     threads : int, optional
-        Of the tracer.
+        Buildings that are flown in at the same time, each by a process; by default one a processor.
+        The result does not depend on it.
     resume : bool
         Whether finished flights are taken from the folder.
     show : callable, optional
         Called as ``show(stage, done, total)``.
     """
-    records: list[Record] = []
-    maps = folder / "maps"
-    maps.mkdir(parents=True, exist_ok=True)
-    for number, building in enumerate(buildings(extent.split, extent.buildings)):
-        if show is not None:
-            show("buildings", number, extent.buildings)
-        records += _fly_in(building, entrants, extent, folder, threads, resume=resume)
-    if show is not None:
-        show("buildings", extent.buildings, extent.buildings)
-    return records
+    for part in ("maps", "flights"):
+        (folder / part).mkdir(parents=True, exist_ok=True)
+    total, count = extent.buildings, min(n_threads(threads), extent.buildings)
+    records: dict[str, list[Record]] = {}
+    shown = show or _show_nothing
+    shown("buildings", 0, total)
+    if count == 1:
+        for building in buildings(extent):
+            records[building.name] = fly_in(building, entrants, extent, folder, resume)
+            shown("buildings", len(records), total)
+    else:
+        with _processes(count) as pool:
+            waiting = {
+                pool.submit(fly_in, building, entrants, extent, folder, resume): building.name
+                for building in buildings(extent)
+            }
+            for done in as_completed(waiting):
+                records[waiting[done]] = done.result()
+                shown("buildings", len(records), total)
+    order = sorted(records, key=lambda name: (name.partition("-")[0] == "paper", name))
+    return [record for name in order for record in records[name]]
 
 
-def _fly_in(
-    building: Building,
-    entrants: Sequence[Entrant],
-    extent: Extent,
-    folder: Path,
-    threads: int | None,
-    *,
-    resume: bool,
-) -> Iterator[Record]:
+def _show_nothing(stage: str, done: int, total: int) -> None:
+    pass
+
+
+def buildings(extent: Extent) -> Iterator[Building]:
+    """Yield the buildings of an extent; those that take longest first."""
+    parts = [own(tuple(map(Path, extent.plans)))]
+    if extent.paper:
+        parts.append(paper())
+    if extent.generated:
+        parts.append(generated(extent.split, extent.generated))
+    return chain(*parts)
+
+
+@contextmanager
+def _processes(count: int) -> Generator[Executor]:
+    """Processes that end with this one, and compute on one thread each."""
+    names = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+    before = {name: os.environ.get(name) for name in names}
+    os.environ.update(dict.fromkeys(names, "1"))
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(count, mp_context=context, initializer=_end_with_parent)
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def _end_with_parent() -> None:
+    """Leave Ctrl-C to the parent process, and end when it has ended in any way."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def watch() -> None:
+        if (parent := multiprocessing.parent_process()) is not None:
+            parent.join()
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def fly_in(
+    building: Building, entrants: Sequence[Entrant], extent: Extent, folder: Path, resume: bool
+) -> list[Record]:
+    """Fly entrants in a building, or load their flights."""
     mission: Mission | None = None
+    records: list[Record] = []
     for entrant in entrants:
         path = folder / "flights" / f"{building.name}-{_file_name(entrant)}.json"
-        key = {"version": BENCHMARK_VERSION, "seeds": extent.seeds, "flights": extent.flights}
-        saved = _load(path, key) if resume else None
-        if saved is None:
-            mission = mission or building.mission(folder / "maps", threads)
-            policy = entrant.make(Briefing(building, entrant.knows))
-            saved = [
-                _record(entrant, condition, building, mission, Guarded(policy), extent)
-                for condition in CONDITIONS
+        key = {
+            "version": BENCHMARK_VERSION,
+            "building": building.fingerprint,
+            "seeds": extent.seeds,
+            "entrant": [entrant.name, entrant.knows],
+        }
+        flown = _load(path, key) if resume else None
+        if flown is None:
+            mission = mission or building.mission(folder / "maps")
+            flown = [
+                _record(entrant, condition, building, mission, extent) for condition in CONDITIONS
             ]
-            path.parent.mkdir(parents=True, exist_ok=True)
             with atomic_write(path) as temporary:
-                temporary.write_text(json.dumps({**key, "records": [asdict(r) for r in saved]}))
-        yield from saved
+                temporary.write_text(json.dumps({**key, "records": [asdict(r) for r in flown]}))
+        records += flown
+    return records
 
 
 def _file_name(entrant: Entrant) -> str:
@@ -137,44 +215,61 @@ def _load(path: Path, key: dict[str, Any]) -> list[Record] | None:
 
 
 def _record(
-    entrant: Entrant,
-    condition: Condition,
-    building: Building,
-    mission: Mission,
-    policy: Guarded,
-    extent: Extent,
+    entrant: Entrant, condition: Condition, building: Building, mission: Mission, extent: Extent
 ) -> Record:
     world, task = condition.world(mission), condition.task
-    begin_s, before = time.process_time(), policy.collisions
+    policy = Guarded(entrant.make(Briefing(condition, entrant.knows, building, mission)))
+    begin_s = time.process_time()
     flown = [
         fly(
             world,
             task,
-            condition.observation,
+            condition.observation(world_seen=entrant.knows == "world"),
             policy,
-            episodes=extent.flights,
+            episodes=flights_of_a_seed(building.site),
             seed=1000 * building.number + seed,
         )
         for seed in range(extent.seeds)
     ]
+    cpu_s = time.process_time() - begin_s
     hops = Hypotheses.of_mission(mission, task).hops
     return Record(
         entrant=entrant.name,
         knows=entrant.knows,
         condition=condition.name,
+        site=building.site,
         building=building.name,
         found=_all(flown, lambda f: f.found),
         false_alarm=_all(flown, lambda f: f.false_alarm),
         steps=_all(flown, lambda f: f.steps),
-        shortest=_all(
-            flown,
-            lambda f: np.array([hops[c[0], m[0]] for c, m in zip(f.cells, f.mode, strict=True)]),
-        ),
+        moves=_all(flown, lambda f: f.moves),
+        shortest=_all(flown, lambda f: shortest(f, hops)),
         turns=_all(flown, lambda f: f.turns),
         energy_kj=_all(flown, lambda f: np.round(f.energy_kj, 3)),
-        collisions=policy.collisions - before,
-        cpu_s=round(time.process_time() - begin_s, 4),
+        collisions=policy.collisions,
+        cpu_s=round(cpu_s, 4),
     )
+
+
+def shortest(flights: Flights, hops: NDArray[np.int32]) -> NDArray[np.int64]:
+    """Steps of one who knows beforehand where the transmitter will be, and is there the earliest.
+
+    At second t it can be found by a flight of ``hops[start, mode(t)]`` steps, if these are not more
+    than t.
+
+    Parameters
+    ----------
+    flights : Flights
+        With the modes of N flights.
+    hops : (S, M) int32
+        Fewest steps from each cell to where it is found in each mode.
+    """
+    found: list[int] = []
+    for cells, modes in zip(flights.cells, flights.modes, strict=True):
+        steps = hops[cells[0], modes]
+        in_time = np.flatnonzero(steps <= np.arange(steps.size))
+        found.append(int(steps[in_time[0]] if in_time.size else steps[0]))
+    return np.array(found, dtype=np.int64)
 
 
 def _all(flown: Sequence[Flights], of: Callable[[Flights], Any]) -> list[Any]:

@@ -8,101 +8,103 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.benchmark.protocol import CONFIRMATIONS
 from rssnav.benchmark.running import Record
-from rssnav.experiments.statistics import mean
+from rssnav.experiments.statistics import Estimate, mean
+
+WITHIN_S = (25, 50, 100, 200, 400)
+"""Times at which the distribution of the time to find is given [s]."""
 
 
 @dataclass(frozen=True)
 class Score:
-    """An entrant's result in a task.
+    """An entrant's result in a task and the buildings of a site.
 
     Attributes
     ----------
-    entrant, knows, condition : str
-        Who, its track, which task.
-    flights, buildings : int
-        How many.
-    success, false_alarms : float
-        Parts of the flights.
-    spl, spl_low, spl_high : float
-        Success weighted by path length, and its 95 % interval over buildings. Where the goal is
-        confirmed, the fewest steps include the readings that confirm it.
-    time_s : list of float or None
-        Time to find: quartiles and ninth decile over all flights, those that fail last; None where
-        the quantile is a failure [s].
+    site, condition, entrant, knows : str
+        Where, which task, who, its track.
+    flights : int
+        In all buildings.
+    spl_by_building : list of float
+        Success weighted by path length in each building.
+    spl, success, false_alarms : Estimate
+        Means over the buildings with 95 % intervals, for which buildings are drawn with
+        replacement.
+    median_s : float or None
+        Median time to find over all flights, those that fail last; None where it is a failure [s].
+    found_within : list of float
+        Part of the flights that have found the transmitter after each of `WITHIN_S`.
     energy_kj, turns : float
-        Means over all flights.
+        Means over all flights, of those that found it and those that did not.
     collisions : int
         Impossible actions.
     step_us : float
         Processor time of a second of flight, world included [microseconds].
     """
 
+    site: str
+    condition: str
     entrant: str
     knows: str
-    condition: str
     flights: int
-    buildings: int
-    success: float
-    false_alarms: float
-    spl: float
-    spl_low: float
-    spl_high: float
-    time_s: list[float | None]
+    spl_by_building: list[float]
+    spl: Estimate
+    success: Estimate
+    false_alarms: Estimate
+    median_s: float | None
+    found_within: list[float]
     energy_kj: float
     turns: float
     collisions: int
     step_us: float
 
 
-QUANTILES = (0.25, 0.5, 0.75, 0.9)
-
-
 def scores(records: Sequence[Record]) -> list[Score]:
-    """Score of each entrant in each task, in the order of the records."""
-    groups: dict[tuple[str, str, str], list[Record]] = {}
+    """Score of each entrant in each task and site, in the order of the records."""
+    groups: dict[tuple[str, ...], list[Record]] = {}
     for record in records:
-        groups.setdefault((record.condition, record.knows, record.entrant), []).append(record)
+        key = (record.site, record.condition, record.knows, record.entrant)
+        groups.setdefault(key, []).append(record)
     return [_score(group) for group in groups.values()]
 
 
+def spl(record: Record) -> float:
+    """Success weighted by path length (Anderson et al. 2018, arXiv:1807.06757).
+
+    Lengths count steps that lead to another cell: readings in place cost time, not length.
+    """
+    least, flown = np.asarray(record.shortest), np.asarray(record.moves)
+    return float(np.mean(np.asarray(record.found) * least / np.maximum(least, flown)))
+
+
 def _score(group: list[Record]) -> Score:
-    found, steps = _joined(group, "found").astype(bool), _joined(group, "steps")
-    spl = mean([float(np.mean(_spl(record))) for record in group])
-    times = np.sort(np.where(found, steps, np.inf))
-    first = group[0]
+    first, found, steps = group[0], _joined(group, "found"), _joined(group, "steps")
+    times = np.sort(np.where(found > 0.0, steps, np.inf))
+    median = float(times[(times.size - 1) // 2])
+    by_building = [spl(record) for record in group]
     return Score(
+        site=first.site,
+        condition=first.condition,
         entrant=first.entrant,
         knows=first.knows,
-        condition=first.condition,
         flights=found.size,
-        buildings=len(group),
-        success=float(found.mean()),
-        false_alarms=float(_joined(group, "false_alarm").mean()),
-        spl=spl.value,
-        spl_low=spl.low,
-        spl_high=spl.high,
-        time_s=[_quantile(times, q) for q in QUANTILES],
-        energy_kj=float(_joined(group, "energy_kj").mean()),
-        turns=float(_joined(group, "turns").mean()),
+        spl_by_building=[round(value, 4) for value in by_building],
+        spl=_rounded(by_building),
+        success=_rounded([float(np.mean(record.found)) for record in group]),
+        false_alarms=_rounded([float(np.mean(record.false_alarm)) for record in group]),
+        median_s=median if np.isfinite(median) else None,
+        found_within=[round(float(np.mean(times <= limit)), 4) for limit in WITHIN_S],
+        energy_kj=round(float(_joined(group, "energy_kj").mean()), 4),
+        turns=round(float(_joined(group, "turns").mean()), 3),
         collisions=sum(record.collisions for record in group),
-        step_us=1e6 * sum(record.cpu_s for record in group) / float(steps.sum()),
+        step_us=round(1e6 * sum(record.cpu_s for record in group) / float(steps.sum()), 1),
     )
+
+
+def _rounded(of_buildings: list[float]) -> Estimate:
+    estimate = mean(of_buildings)
+    return Estimate(*(round(v, 4) for v in (estimate.value, estimate.low, estimate.high)))
 
 
 def _joined(group: list[Record], name: str) -> NDArray[np.float64]:
     return np.concatenate([np.asarray(getattr(record, name), np.float64) for record in group])
-
-
-def _spl(record: Record) -> NDArray[np.float64]:
-    """Success of each flight, weighted by path length (Anderson et al. 2018, arXiv:1807.06757)."""
-    steps = np.asarray(record.steps, np.float64)
-    confirming = CONFIRMATIONS - 1 if "dB" in record.condition else 0
-    least = np.asarray(record.shortest, np.float64) + confirming
-    return np.asarray(record.found) * least / np.maximum(least, steps)
-
-
-def _quantile(times: NDArray[np.float64], q: float) -> float | None:
-    value = float(times[min(int(q * times.size), times.size - 1)])
-    return value if np.isfinite(value) else None

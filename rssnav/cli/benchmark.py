@@ -19,13 +19,15 @@ def add_to(parent: typer.Typer) -> None:
             "rssnav benchmark --quick",
             "rssnav benchmark --out benchmark",
             "rssnav benchmark --policy mine:make_policy --track RSS --out mine",
+            "rssnav benchmark --with mine/results.json",
         ),
     )(run_benchmark)
 
 
 def run_benchmark(
     quick: Annotated[
-        bool, typer.Option("--quick", help="6 buildings and 2 seeds instead of 50 and 10.")
+        bool,
+        typer.Option("--quick", help="6 generated buildings and 2 seeds: about 3 minutes."),
     ] = False,
     out: Annotated[Path, typer.Option(metavar="FOLDER", help="Output folder.")] = Path("benchmark"),
     policy: Annotated[
@@ -35,33 +37,52 @@ def run_benchmark(
             help="Fly this policy alone: a function that takes a Briefing and returns a policy.",
         ),
     ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Name of it in the tables.", show_default="the function"),
+    ] = None,
     track: Annotated[
         str,
-        typer.Option(metavar="RSS|plan|maps", help="What the policy of --policy is told."),
+        typer.Option(metavar="TRACK", help="What it is told: RSS, plan, maps, places or world."),
     ] = "RSS",
+    split: Annotated[
+        str,
+        typer.Option(
+            metavar="SPLIT", help="Generated buildings: train or validation to tune, test to score."
+        ),
+    ] = "test",
+    buildings: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=1, help="Fly in N generated buildings only, with 2 seeds."),
+    ] = None,
+    plans: Annotated[
+        list[Path] | None,
+        typer.Option("--plan", metavar="FILE", help="Fly in this plan too; may be repeated."),
+    ] = None,
     beside: Annotated[
         list[Path] | None,
-        typer.Option("--with", metavar="FILE", help="Add the scores of other results.json files."),
+        typer.Option("--with", metavar="FILE", help="Add the scores of another results.json."),
     ] = None,
     resume: Annotated[
         bool, typer.Option("--resume/--no-resume", help="Resume from saved flights, or start over.")
     ] = True,
     threads: Threads = None,
 ) -> None:
-    """Fly policies in generated buildings that they have not seen, and score them.
+    """Fly policies in buildings that they have not seen, and score them.
 
-    Writes results.json, table.md and page.html. Finished flights are saved, so that the same command
-    resumes after Ctrl-C or a crash.
+    Writes results.json, table.md and page.html. Finished flights are saved in the output folder, so
+    that the same command resumes after Ctrl-C or a crash.
     """
     from rssnav.benchmark.entrants import ENTRANTS, entrant_of
-    from rssnav.benchmark.page import load_scores, table_rows, write
-    from rssnav.benchmark.protocol import FULL, QUICK
+    from rssnav.benchmark.page import table_rows, write
+    from rssnav.benchmark.protocol import FULL, QUICK, extent_of
     from rssnav.benchmark.running import run
     from rssnav.benchmark.scores import scores
+    from rssnav.benchmark.submissions import merged, read_scores
 
-    entrants = ENTRANTS if policy is None else (entrant_of(policy, track),)
-    others = [score for path in beside or () for score in load_scores(path)]
-    extent = QUICK if quick else FULL
+    entrants = ENTRANTS if policy is None else (entrant_of(policy, track, name),)
+    extent = extent_of(QUICK if quick or buildings else FULL, split, buildings, plans or ())
+    others = [read_scores(path, extent) for path in beside or ()]
     try:
         with stage_progress() as show:
             records = run(entrants, extent, out, threads=threads, resume=resume, show=show)
@@ -70,8 +91,9 @@ def run_benchmark(
             f"interrupted; finished flights are saved in {out}; run the same command again to "
             "resume"
         ) from interrupt
-    found = [*scores(records), *others]
+    found = merged([scores(records), *others])
     files = write(out, found, extent)
-    print_table(("task", "policy", "knows", "success", "SPL (95 %)"), table_rows(found))
+    head = ("buildings", "task", "policy", "knows", "success", "SPL (95 %)")
+    print_table(head, table_rows(found))
     for file in files:
         say(str(file))

@@ -60,6 +60,8 @@ class EnvOptions:
         Distance below which it is found if ``goal_dbm`` is None [m].
     confirmations : int
         Readings whose mean must exceed ``goal_dbm``.
+    confirmation_error : float or None
+        Probability of a false alarm, if a sequential test is to decide (`ReadingAbove.error`).
     sigma_db, correlation : float
         Fluctuation of readings: standard deviation and correlation in time.
     sensitivity_dbm : float
@@ -86,6 +88,7 @@ class EnvOptions:
     goal_dbm: float | None = None
     goal_m: float = 2.0
     confirmations: int = 1
+    confirmation_error: float | None = None
     sigma_db: float = 0.0
     correlation: float = 0.0
     sensitivity_dbm: float = AGENT_SENSITIVITY_DBM
@@ -139,8 +142,11 @@ class EnvOptions:
         level = self.goal_dbm
         if level is None and self.preset() == "paper" and self.places == 1:
             level = -21.0  # the paper's
+        goal = Within(self.goal_m)
+        if level is not None:
+            goal = ReadingAbove(level, self.confirmations, self.confirmation_error)
         return Task(
-            goal=Within(self.goal_m) if level is None else ReadingAbove(level, self.confirmations),
+            goal=goal,
             reward=self.reward,
             goal_reward=self.goal_reward,
             per_second=self.per_second,

@@ -66,7 +66,9 @@ class TaskTables(NamedTuple):
 
     by_reading: bool  # it ends by a reading above `found_dbm`, otherwise in a cell of `goal`
     goal: NDArray[np.bool_]  # (M * S,) or empty
-    confirmations: int  # readings whose mean must exceed `found_dbm`, one a second
+    confirmations: int  # readings that decide about `found_dbm`, one a second
+    log_accept: float  # bounds of the sequential test that decides; 0 if the mean does
+    log_reject: float
     difference: bool  # RSS_t - RSS_(t-1) is a reward [dB]
     arrival: NDArray[np.float64]  # (M * S,) reward of arriving in a cell, or empty
     per_second: float  # reward of every second
@@ -239,22 +241,56 @@ def _confirmed(sensor: Sensor, flight: Flight, place: int) -> bool:
     """Whether readings find the transmitter.
 
     A first reading above the level is followed by others in the same cell, one a second, while time
-    is left; their mean decides.
+    is left; their mean decides, or a sequential test.
     """
     task, receiver, reading = sensor.task, sensor.receiver, flight.real[READING_DBM]
     if not task.by_reading:
         return bool(task.goal[place])
     if reading <= receiver.found_dbm:
         return False
+    if task.log_accept > 0.0:
+        return _accepted(sensor, flight, place)
     total, taken = reading, 1
     while taken < task.confirmations and flight.whole[SECONDS] < task.max_seconds:
-        reading = read(receiver, flight.real[FLUCTUATION_DB:], flight.generator, place)
-        flight.whole[SECONDS] += 1
-        flight.real[ENERGY_J] += task.hover_j
-        flight.real[READING_DBM] = reading
-        total += reading
+        total += _one_more(sensor, flight, place)
         taken += 1
     return taken == task.confirmations and total > taken * receiver.found_dbm
+
+
+@jit(fused=True)
+def _one_more(sensor: Sensor, flight: Flight, place: int) -> float:
+    """Reading after a second in the same cell, while the transmitter stays where it is."""
+    reading = read(sensor.receiver, flight.real[FLUCTUATION_DB:], flight.generator, place)
+    flight.whole[SECONDS] += 1
+    flight.real[ENERGY_J] += sensor.task.hover_j
+    flight.real[READING_DBM] = reading
+    return reading
+
+
+@jit(fused=True)
+def _accepted(sensor: Sensor, flight: Flight, place: int) -> bool:
+    """Sequential probability ratio test of the RSS (Wald 1945, doi:10.1214/aoms/1177731118).
+
+    With z = (reading - level) / sigma, the hypotheses are that the mean of z is 0, or that it is 1.
+    Of readings with correlation r from one to the next, z - r z' is independent of those before,
+    with the variance 1 - r^2 and the mean 0 or 1 - r, which gives the logarithm of the ratio.
+    """
+    task, receiver = sensor.task, sensor.receiver
+    if receiver.sigma_db == 0.0:
+        return True
+    r = receiver.correlation
+    z = (flight.real[READING_DBM] - receiver.found_dbm) / receiver.sigma_db
+    log_ratio, taken = z - 0.5, 1
+    while (
+        task.log_reject < log_ratio < task.log_accept
+        and taken < task.confirmations
+        and flight.whole[SECONDS] < task.max_seconds
+    ):
+        before = z
+        z = (_one_more(sensor, flight, place) - receiver.found_dbm) / receiver.sigma_db
+        log_ratio += (z - r * before - 0.5 * (1.0 - r)) / (1.0 + r)
+        taken += 1
+    return log_ratio >= task.log_accept
 
 
 @jit(fused=True)

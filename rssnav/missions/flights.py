@@ -46,6 +46,8 @@ class Flights:
         Mode at the begin and at the end.
     cells : tuple of (n + 1,) int32
         Cell after each action, the start first.
+    modes : tuple of (n + 1,) int32
+        Mode of the reading in each of them.
     """
 
     found: NDArray[np.bool_]
@@ -58,16 +60,25 @@ class Flights:
     reward: NDArray[np.float64]
     mode: NDArray[np.int64]
     cells: tuple[NDArray[np.int32], ...]
+    modes: tuple[NDArray[np.int32], ...]
+
+    @property
+    def moves(self) -> NDArray[np.int64]:
+        """Steps that led to another cell (N,): all but hovering and further readings."""
+        return np.array([np.count_nonzero(np.diff(c)) for c in self.cells], dtype=np.int64)
 
     def spl(self, shortest: NDArray[np.float64]) -> float:
         """Success weighted by path length (Anderson et al. 2018, arXiv:1807.06757).
+
+        Lengths are counted in steps that lead to another cell, so readings that confirm the goal
+        add nothing.
 
         Parameters
         ----------
         shortest : (N,) float64
             Fewest steps that each flight could have taken.
         """
-        return float(np.mean(self.found * shortest / np.maximum(shortest, self.steps)))
+        return float(np.mean(self.found * shortest / np.maximum(shortest, self.moves)))
 
 
 class Flyer:
@@ -163,7 +174,7 @@ class _Flown:
     actions: list[int]
     cells: list[int]
     rewards: float
-    modes: tuple[int, int]
+    modes: list[int]
     status: int
     seconds: int
     energy_j: float
@@ -172,20 +183,22 @@ class _Flown:
 def _one(flyer: Flyer, policy: Policy, generator: NDArray[np.uint64]) -> _Flown:
     seen = flyer.begin(generator)
     whole = flyer.fleet.whole[0]
-    first_mode, cells, actions, total = int(whole[stepping.MODE]), [int(whole[1])], [], 0.0
-    status = stepping.RUNNING
+    modes, cells = [int(whole[stepping.MODE])], [int(whole[stepping.CELL])]
+    actions: list[int] = []
+    total, status = 0.0, stepping.RUNNING
     while status == stepping.RUNNING:
         action = policy.act(seen, flyer.mask())
         reward, status = flyer.step(action)
         total += reward
         actions.append(action)
         cells.append(int(whole[stepping.CELL]))
+        modes.append(int(whole[stepping.MODE]))
         seen = flyer.seen()
     return _Flown(
         actions,
         cells,
         total,
-        (first_mode, int(whole[stepping.MODE])),
+        modes,
         status,
         int(whole[stepping.SECONDS]),
         float(flyer.fleet.real[0, stepping.ENERGY_J]),
@@ -194,7 +207,7 @@ def _one(flyer: Flyer, policy: Policy, generator: NDArray[np.uint64]) -> _Flown:
 
 def _flights(mission: Mission, goal: NDArray[np.bool_], flown: list[_Flown]) -> Flights:
     ended = np.array([f.status == stepping.FOUND for f in flown])
-    there = np.array([goal[f.modes[1], f.cells[-1]] for f in flown])
+    there = np.array([goal[f.modes[-1], f.cells[-1]] for f in flown])
     turned = [_turned_deg(f.actions) for f in flown]
     length_m = np.append(mission.layout.step_length_m, 0.0)
     moved = [np.diff(f.cells) != 0 for f in flown]
@@ -209,8 +222,9 @@ def _flights(mission: Mission, goal: NDArray[np.bool_], flown: list[_Flown]) -> 
         turns=np.array([np.count_nonzero(t) for t in turned], dtype=np.int64),
         turned_deg=np.array([t.sum() for t in turned]),
         reward=np.array([f.rewards for f in flown]),
-        mode=np.array([f.modes for f in flown], dtype=np.int64),
+        mode=np.array([(f.modes[0], f.modes[-1]) for f in flown], dtype=np.int64),
         cells=tuple(np.array(f.cells, dtype=np.int32) for f in flown),
+        modes=tuple(np.array(f.modes, dtype=np.int32) for f in flown),
     )
 
 

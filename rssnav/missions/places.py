@@ -154,9 +154,15 @@ def mission_of_fields(
     rss_dbm: NDArray[np.float64],
     places: Sequence[tuple[float, float, float]],
     modes: ModeProcess | None = None,
+    starts: NDArray[np.integer] | None = None,
 ) -> Mission:
-    """Mission of layouts (one, or one a mode), a field (M, S) and a place for each mode."""
+    """Mission of layouts (one, or one a mode), a field (M, S) and a place for each mode.
+
+    Flights begin in any of the given cells, by default at the plan's start.
+    """
     layout, n = layouts[0], len(places)
+    if starts is None:
+        starts = np.array([layout.nearest(*plan.require_start())])
     several = len(layouts) > 1
     return Mission(
         layouts=layouts,
@@ -164,8 +170,8 @@ def mission_of_fields(
         rss_dbm=rss_dbm,
         distance_m=np.stack([layout.distance_m(x, y) for x, y, _ in places]),
         modes=modes or ModeProcess.steady(n),
-        starts=np.array([layout.nearest(*plan.require_start())], dtype=np.int32),
-        start_probability=np.ones(1),
+        starts=starts.astype(np.int32),
+        start_probability=np.full(starts.size, 1.0 / starts.size),
         source=np.array([place[:2] for place in places], dtype=np.float64),
         name=plan.name,
     )

@@ -143,14 +143,19 @@ def _receiver(mission: Mission, task: Task, observation: Observation) -> Receive
 def _task(mission: Mission, task: Task) -> TaskTables:
     goal, by_reading = _NO_FLAGS, isinstance(task.goal, ReadingAbove)
     arrival = _NO_REALS
-    if not by_reading:
+    confirmations, log_accept, log_reject = 1, 0.0, 0.0
+    if isinstance(task.goal, ReadingAbove):
+        confirmations, (log_accept, log_reject) = task.goal.confirmations, task.goal.log_bounds
+    else:
         goal = np.ascontiguousarray(task.goal.cells(mission)).reshape(-1)
     if task.reward == "closeness":
         arrival = np.ascontiguousarray(1.0 / mission.distance_m).reshape(-1)
     return TaskTables(
         by_reading=by_reading,
         goal=goal,
-        confirmations=int(task.goal.confirmations) if isinstance(task.goal, ReadingAbove) else 1,
+        confirmations=int(confirmations),
+        log_accept=float(log_accept),
+        log_reject=float(log_reject),
         difference=task.reward == "rss",
         arrival=arrival,
         per_second=float(task.per_second),

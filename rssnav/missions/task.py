@@ -14,6 +14,7 @@ from rssnav.missions.layout import WorldError
 from rssnav.missions.mission import Mission
 
 GOAL_DISTANCE_M = 2.0
+_MISSES = 0.05
 
 
 class EnergyModel(Protocol):
@@ -46,14 +47,31 @@ class ReadingAbove:
     confirmations : int
         Readings whose mean must exceed it. After a first reading above the level the UAV hovers and
         takes the others, one a second; with 1 the first reading decides.
+    error : float, optional
+        Probability of a false alarm: in a cell whose RSS is not above the level, a visit ends by
+        one with at most this probability. With it a sequential test decides (Wald 1945,
+        doi:10.1214/aoms/1177731118), as soon as it can and after ``confirmations`` readings at the
+        latest. Its alternative is an RSS higher than the level by the standard deviation of the
+        fluctuation, which it misses with a probability of about 0.05 after a first reading above
+        the level. The bound holds for any number of readings, also if they are correlated.
     """
 
     level_dbm: float = -21.0
     confirmations: int = 1
+    error: float | None = None
 
     def __post_init__(self) -> None:
         require(is_finite(self.level_dbm), "level_dbm", self.level_dbm, "a finite level [dBm]")
         require(self.confirmations >= 1, "confirmations", self.confirmations, "at least 1")
+        if self.error is not None:
+            require(0.0 < self.error < 1.0, "error", self.error, "a probability in (0, 1)")
+            several = self.confirmations > 1
+            require(several, "confirmations", self.confirmations, "at least 2 for a test by error")
+
+    @property
+    def log_bounds(self) -> tuple[float, float]:
+        """Logarithms of the likelihood ratio at which the test accepts and rejects; 0 without."""
+        return (0.0, 0.0) if self.error is None else (-math.log(self.error), math.log(_MISSES))
 
     def cells(self, mission: Mission) -> NDArray[np.bool_]:
         """Cells (M, S) where it is found by readings without fluctuation."""

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 from q_learning_twin import Xoshiro, high_unit
+from scipy.stats import multivariate_normal
 
 from rssnav.missions import Mission, Observation, ReadingAbove, Task
 
@@ -101,10 +102,30 @@ class MissionTwin:
             first > goal.level_dbm
             and len(readings) < goal.confirmations
             and self.seconds < self.task.max_steps
+            and self.verdict(readings) is None
         ):
             self.reading = self.read()
             self.seconds += 1
             self.energy_j += self.task.energy.hover_j if self.task.energy else 0.0
             readings.append(self.reading)
+        if goal.error is not None:
+            return first > goal.level_dbm and self.verdict(readings) is True
         enough = len(readings) == goal.confirmations
         return enough and sum(readings) > goal.level_dbm * len(readings)
+
+    def verdict(self, readings) -> bool | None:
+        """What Wald's test says of the readings so far, by the densities themselves."""
+        goal, noise = self.task.goal, self.observation.fluctuation
+        if goal.error is None:
+            return None
+        if noise.sigma_db == 0.0:
+            return True
+        lags = np.abs(np.subtract.outer(np.arange(len(readings)), np.arange(len(readings))))
+        covariance = noise.sigma_db**2 * noise.correlation**lags
+        low, high = (
+            multivariate_normal(np.full(len(readings), mean_dbm), covariance).logpdf(readings)
+            for mean_dbm in (goal.level_dbm, goal.level_dbm + noise.sigma_db)
+        )
+        if high - low >= math.log(1.0 / goal.error):
+            return True
+        return False if high - low <= math.log(0.05) else None

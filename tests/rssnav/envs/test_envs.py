@@ -49,6 +49,7 @@ OPTIONS = {
     "history": {"observation": "history", "history": 3, "hover": True},
     "dict": {"observation": "dict", "sensitivity_dbm": -40.0},
     "noise": {"sigma_db": 2.0, "correlation": 0.3, "confirmations": 3, "hover": True},
+    "test": {"sigma_db": 2.0, "confirmations": 9, "confirmation_error": 0.1},
     "places": {"goal_dbm": None, "places": 3, "jump_probability": 0.02, "observation": "history"},
     "battery": {"battery_kj": 4.0, "per_kj": -1.0, "reward": "none"},
 }

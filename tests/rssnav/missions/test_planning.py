@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from heapq import heappop, heappush
 
 import numpy as np
@@ -9,7 +10,9 @@ import pytest
 from small_missions import room_mission
 
 from rssnav import Fluctuation, IntervalStates
+from rssnav.kernels.stepping import CELL, FOUND, RUNNING
 from rssnav.missions import (
+    HOVER,
     GreedyTable,
     ModeProcess,
     MultirotorEnergy,
@@ -22,6 +25,7 @@ from rssnav.missions import (
     learn_by_model,
     plan_mission,
 )
+from rssnav.missions.flights import Flyer
 
 ENERGY = MultirotorEnergy(turn_j_per_deg=2.0)
 NEAR = Task(Within(1.0), "none", energy=ENERGY, max_steps=500)
@@ -123,6 +127,29 @@ def test_several_readings_confirm_the_goal():
         alarms[readings] = flights.false_alarm.mean()
     assert alarms[1] > 0.15
     assert alarms[16] < 0.35 * alarms[1]
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.6])
+def test_a_sequential_test_keeps_its_error_in_the_worst_cell_and_misses_no_clear_one(correlation):
+    """A UAV that hovers begins a test with each reading above the level."""
+    mission, error, visits = room_mission(ModeProcess.steady(4)), 0.05, 4000
+    start = int(mission.starts[0])
+    mission = replace(mission, rss_dbm=np.full_like(mission.rss_dbm, -30.0))
+    bins = Observation(IntervalStates((-30.0,)), fluctuation=Fluctuation(2.0, correlation))
+    ends = {}
+    for excess_db in (0.0, 8.0):
+        goal = ReadingAbove(-30.0 - excess_db, 200, error)
+        flyer = Flyer(mission, Task(goal, max_steps=10**9), bins)
+        flyer.begin(np.arange(1, 5, dtype=np.uint64))
+        tests: list[bool] = []
+        for _ in range(visits):
+            flyer.fleet.status[0] = RUNNING
+            tests.append(flyer.step(HOVER)[1] == FOUND)
+        ends[excess_db] = np.mean(tests)
+        assert flyer.fleet.whole[0, CELL] == start
+    # Visits whose first reading is not above the level are counted, as the bound does.
+    assert 0.2 * error < ends[0.0] <= error
+    assert ends[8.0] > 0.99
 
 
 def test_energy_without_a_model_is_refused():

@@ -35,6 +35,11 @@ CASES = {
         Task(ReadingAbove(-23.0, 3), goal_reward_is="instead", per_second=-1.0, max_steps=40),
         Observation(BINS, cell=True, doors=True, fluctuation=NOISE),
     ),
+    "noise, tested": (
+        ModeProcess.jumping(4, 0.1),
+        Task(ReadingAbove(-23.0, 7, 0.01), per_second=-1.0, max_steps=40),
+        Observation(BINS, cell=True, fluctuation=NOISE),
+    ),
     "energy": (
         ModeProcess.switching(2, 0.3, 0.05),
         Task(

@@ -1,0 +1,52 @@
+"""Fingerprints of the generated buildings of this version: 300, in three splits.
+
+`tests/benchmarks/freeze_buildings.py` writes this module for the next version.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+Split = Literal["train", "validation", "test"]
+
+_TEXT: dict[Split, str] = {
+    "train": """
+        23aad804 71c57fae 61a315e7 a8b766ca 002fc1d9 ae76c175 cf71dc9e 6abe73c0 a50a8754 d2a63c50
+        bb18f7da 4124b99f 006b8f13 ffe3fc65 def0128c 826ba7ea 9015163a 48633444 e178b9a1 bcdbb604
+        932bdabc 4e4dc5d2 6e8bc8b8 292175af 9fd0e68f 4165f76b 4ce08d4b be84e01e 443d2c27 4ddbc06f
+        fa681d3d 91257e64 a87bb382 e8fcc287 c1413a09 59144b06 f45a923b 1cd4f546 afe36aca 4f8d3799
+        bbfc6eaa 8d68bf11 c7daf9bf 3476c265 5bd69910 b994d1f3 3a3b4e46 f9f6d297 9b1376f5 f5dcc453
+        1ecad13c 896ed446 e7c88782 9d590964 eb8b11c1 3d82ab05 228b22f4 f9e28dd4 0f49527b 40440667
+        7a3ee3b9 82145149 f4336a06 e3ed93cd a896df4c 4a98719b 42dcbb93 935e3972 e5e26e92 2048ebcd
+        b23082d3 1ba540e3 a38cea85 17ef76db 5ce1b6f5 306b5ab7 cedff4bc 6ed28830 a7931221 c1535080
+        148362db 9d645a79 3060d5a2 f13da7db 5e2f5360 d5657c56 c3c7df50 402fc430 8a81a3c8 f2aafd86
+        e50c86e7 5fd59df1 08bf335a bc4e681d fbf64316 3d7e5f0d d53725ba 4ac4fafa 03d4a6ce 5aae9720
+        1f8b234b 4458e584 36d3a40b 0e83120f 5a275f86 d07c3616 1fca877e 83253d65 84ead1e9 0e7d4e5d
+        df453210 704d1526 d3aa67bd 89dc4e73 572bb00a e84457e8 7b669c37 b6284dfe 98d1c337 d588c1de
+        a2d8c4c4 7afb9a27 ac06a962 e254dbdc 24498473 b4e90030 36ff65fb da71a72e 9bb12362 46361944
+        f9b6a741 53f129c0 322509b6 d4fb1194 49a1bca0 c20b3cde ae7a66bf b1e7adb1 101eeae8 279d876d
+        acf61f49 e8f8739b d96e7498 d5d725ae 53df7068 fd0f0d4a 6b6ba039 6d0984f8 544a7b5a e36f4533
+        87d56a99 8a8a2d41 3fc35246 6361f4d2 6e8db2ea 2ac1ce7e 6c47fb05 0c68c6b2 7efa5c6a 8d188c64
+        db70708f 42450453 5afb51eb 003527f3 3135810d dc899992 58de58df 26fa7e69 bad78054 b318da03
+        72116f3d 6ebc19ed d228394f 597dda1f c5f513d3 b9428b0b cb595a42 741b7e8b c173eda9 f62b161d
+        6042713f e9790ffd c292893c 991740ed bb63d8e8 dbd15561 3bdc9308 5cdb7322 9d09d0d9 0f974b09
+        688051e8 12000b63 6cd315ad eaca7798 6b3cb723 5e9d1df5 494cd4a6 f3509b68 0edc2539 5ec86f57
+    """,
+    "validation": """
+        90a2d479 da20c4f6 6503e7a8 b5006405 f69a4e11 7fd92e5c 7d17bca6 f58b12e5 cf26f0e6 e6c09e32
+        a07a345f 5e191a46 598dc21d 8af3c4e0 701c4eda 5c6189c5 7ab514bb 154dfbe3 8c59e0d1 a5a57572
+        e4bbb2f7 3fa4cf22 14403040 6b7e9ad2 ab649379 7b68e727 373ec2f6 7d3d7351 0b8d20cc 220e28a9
+        e9155983 2d63019e 6cedcfcc 6273866d 08510f5a 7eebad3e a13bc217 1b25c06c bfd2ed02 7bc5a11c
+        a98456f3 224e8dc8 880ea826 6cd05318 08c87b2c e1b030fa 57127b54 d2c13728 5ddfb34a 127e02b0
+    """,
+    "test": """
+        232b3d2d 47544702 ba373820 03a3669e b674a6e0 67015011 5284b48c 20e89a8c 84965400 0a397c83
+        b0a22232 e08050ab 141e6a88 438f214a d3a236b4 76aba1fb faf8a3d2 5e6a7f36 cfd83e3a 0d7c7d58
+        b3fffe48 4ccbb3d9 c5844c2e a47dc40c 0578e819 363a90cf 28f56fad cdcb2d47 320ab78b 8a71e6ae
+        b4e2d04b bc9f85a0 c445c5d7 ea31e085 9810da99 1c55425e 6bb9a6f0 95eeb2ea 2572a4d8 86b05c5f
+        98f1634f 89dc0375 3a37edce 2cc96295 a67c9c3b faf025d2 c1c8c450 a99a984d ad8ccfbb 7e50ce85
+    """,
+}
+
+FINGERPRINTS: dict[Split, list[str]] = {split: text.split() for split, text in _TEXT.items()}
+"""First 8 hexadecimal digits of the hash of each building's plan and transmitters, in order."""

@@ -1,0 +1,182 @@
+"""Results as a JSON file that others can merge with theirs: written, and read with checks."""
+
+from __future__ import annotations
+
+import json
+import math
+import platform
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, fields
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, get_args
+
+from raytrace.trace import TRACER_VERSION
+from rssnav.benchmark.buildings import Site
+from rssnav.benchmark.entrants import Knows
+from rssnav.benchmark.protocol import BENCHMARK_VERSION, CONDITIONS, Extent
+from rssnav.benchmark.scores import WITHIN_S, Score
+from rssnav.experiments.statistics import Estimate
+
+
+class SubmissionError(ValueError):
+    """A file is no result of this version of the benchmark."""
+
+
+def as_json(scores: Sequence[Score], extent: Extent) -> str:
+    """Results that others can compare with."""
+    content = {
+        "benchmark": "rssnav",
+        "version": BENCHMARK_VERSION,
+        "rssnav": version("rssnav"),
+        "tracer": TRACER_VERSION,
+        "python": platform.python_version(),
+        "extent": json.loads(json.dumps(asdict(extent))),
+        "scores": [asdict(score) for score in scores],
+    }
+    return json.dumps(content, indent=1) + "\n"
+
+
+def read_scores(path: Path, extent: Extent) -> list[Score]:
+    """Read the scores of a results.json that was made to the same extent.
+
+    Raises
+    ------
+    SubmissionError
+        With the file, the entry and what is expected, unless it holds such results.
+    """
+    try:
+        content = json.loads(path.read_text())
+    except (OSError, ValueError) as error:
+        raise SubmissionError(f"{path}: {error}") from error
+    if not isinstance(content, dict) or content.get("benchmark") != "rssnav":
+        raise SubmissionError(f"{path}: not a results.json of rssnav benchmark")
+    for key, expected in (
+        ("version", BENCHMARK_VERSION),
+        ("extent", json.loads(json.dumps(asdict(extent)))),
+    ):
+        if content.get(key) != expected:
+            raise SubmissionError(
+                f"{path}: {key}: {content.get(key)!r}; only results with {expected!r} compare with "
+                "these"
+            )
+    rows = content.get("scores")
+    if not isinstance(rows, list) or not rows:
+        raise SubmissionError(f"{path}: scores: expected a list with at least one entry")
+    return [_score(row, f"{path}: scores[{k}]") for k, row in enumerate(rows)]
+
+
+def merged(parts: Sequence[Sequence[Score]]) -> list[Score]:
+    """Scores of several files.
+
+    Raises
+    ------
+    SubmissionError
+        When two have an entrant of the same name and track.
+    """
+    found: dict[tuple[str, ...], Score] = {}
+    for score in (score for part in parts for score in part):
+        key = (score.site, score.condition, score.knows, score.entrant)
+        if key in found:
+            raise SubmissionError(
+                f"entrant {score.entrant!r} of track {score.knows!r} is in two results; give one "
+                "another name (--name)"
+            )
+        found[key] = score
+    return list(found.values())
+
+
+def _score(row: Any, where: str) -> Score:
+    if not isinstance(row, dict):
+        raise SubmissionError(f"{where}: expected a table, got {row!r}")
+    names = [field.name for field in fields(Score)]
+    for name in names:
+        if name not in row:
+            raise SubmissionError(f"{where}: {name} is missing")
+        holds, expected = _EXPECTED[name]
+        if not holds(row[name]):
+            raise SubmissionError(f"{where}: {name}: {row[name]!r}; expected {expected}")
+    if unknown := sorted(set(row) - set(names)):
+        raise SubmissionError(f"{where}: {unknown[0]}: no such key; there are {', '.join(names)}")
+    for name in ("spl", "success", "false_alarms"):
+        row = {**row, name: Estimate(**row[name])}
+    score = Score(**row)
+    _check_together(score, where)
+    return score
+
+
+def _check_together(score: Score, where: str) -> None:
+    """Check what must hold between the numbers of an entry."""
+    by_building = score.spl_by_building
+    for holds, expected in (
+        (abs(sum(by_building) / len(by_building) - score.spl.value) < 1e-3, "spl: the mean of "
+         "spl_by_building"),
+        (score.spl.value <= score.success.value + 1e-3, "spl: at most success"),
+        (score.success.value + score.false_alarms.value <= 1.001, "success and false_alarms: at "
+         "most 1 together"),
+        (score.found_within == sorted(score.found_within), "found_within: numbers that rise"),
+        (abs(score.found_within[-1] - score.success.value) < 1e-3, "found_within: success at last"),
+        ((score.median_s is None) == (score.found_within[-1] < 0.5), "median_s: null if and only "
+         "if less than half are found"),
+    ):  # fmt: skip
+        if not holds:
+            raise SubmissionError(f"{where}: expected {expected}")
+
+
+def _number(low: float, high: float) -> Callable[[Any], bool]:
+    def holds(value: Any) -> bool:
+        return (
+            isinstance(value, int | float)
+            and not isinstance(value, bool)
+            and math.isfinite(value)
+            and low <= value <= high
+        )
+
+    return holds
+
+
+_part, _positive = _number(0.0, 1.0), _number(0.0, 1e12)
+
+
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**63
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str) and 0 < len(value) <= 80 and value.isprintable()
+
+
+def _is_estimate(value: Any) -> bool:
+    if not isinstance(value, dict) or set(value) != {"value", "low", "high"}:
+        return False
+    return all(map(_part, value.values())) and value["low"] <= value["value"] <= value["high"]
+
+
+def _are_parts(value: Any, count: int | None = None) -> bool:
+    right = isinstance(value, list) and len(value) == (count or len(value)) > 0
+    return right and all(map(_part, value))
+
+
+def _one_of(names: Sequence[str]) -> tuple[Callable[[Any], bool], str]:
+    return (lambda value: value in names), " or ".join(map(repr, names))
+
+
+_ESTIMATE = (_is_estimate, "low <= value <= high, all in [0, 1]")
+
+_EXPECTED: dict[str, tuple[Callable[[Any], bool], str]] = {
+    "site": _one_of(get_args(Site)),
+    "condition": _one_of([condition.name for condition in CONDITIONS]),
+    "entrant": (_is_text, "a name of at most 80 printable characters"),
+    "knows": _one_of(get_args(Knows)),
+    "flights": (lambda v: _is_whole(v) and v > 0, "a positive whole number"),
+    "spl_by_building": (_are_parts, "a list of numbers in [0, 1]"),
+    "spl": _ESTIMATE,
+    "success": _ESTIMATE,
+    "false_alarms": _ESTIMATE,
+    "median_s": (lambda v: v is None or _positive(v), "a number of seconds or null"),
+    "found_within": (lambda v: _are_parts(v, len(WITHIN_S)), f"{len(WITHIN_S)} parts in [0, 1]"),
+    "energy_kj": (_positive, "a number that is not negative"),
+    "turns": (_positive, "a number that is not negative"),
+    "collisions": (_is_whole, "a whole number"),
+    "step_us": (_positive, "a number that is not negative"),
+}

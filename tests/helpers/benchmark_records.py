@@ -1,0 +1,20 @@
+"""Flights of the benchmark, made up."""
+
+from __future__ import annotations
+
+from rssnav.benchmark.running import Record
+
+
+def record(**changes) -> Record:
+    """Three flights: one by the fewest steps, one with a detour and readings in place, one lost."""
+    flights = {
+        "found": [True, True, False],
+        "false_alarm": [False, False, True],
+        "steps": [10, 30, 50],
+        "moves": [10, 25, 50],
+        "shortest": [10, 20, 12],
+        "turns": [1, 2, 3],
+        "energy_kj": [1.0, 2.0, 6.0],
+    }
+    who = {"entrant": "a", "knows": "RSS", "condition": "2 dB", "site": "test", "building": "b"}
+    return Record(**{**who, **flights, "collisions": 4, "cpu_s": 0.009, **changes})

@@ -1,0 +1,211 @@
+"""The benchmark: flights are scored as computed by hand and resumed, and splits never mix."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from benchmark_records import record
+from small_missions import room_mission
+
+import floorplans
+from rssnav.benchmark.buildings import GOAL, LEAST_STEPS, Building, generated, own
+from rssnav.benchmark.entrants import ENTRANTS, Briefing, Entrant, Guarded, entrant_of
+from rssnav.benchmark.frozen import FINGERPRINTS
+from rssnav.benchmark.protocol import CONDITIONS, FULL, Extent, extent_of
+from rssnav.benchmark.running import run, shortest
+from rssnav.benchmark.scores import WITHIN_S, scores, spl
+from rssnav.missions import HOVER, Flights, ModeProcess, RandomPolicy, Task, fly
+from rssnav.policies import Hypotheses
+
+CONDITION = {condition.name: condition for condition in CONDITIONS}
+SMALL = Extent(split="train", generated=1, paper=False, seeds=1)
+ORACLES = [entrant for entrant in ENTRANTS if entrant.knows == "world"]
+
+
+@pytest.fixture(scope="module")
+def building() -> Building:
+    return next(generated("train", 1))
+
+
+@pytest.fixture(scope="module")
+def mission(building):
+    return building.mission()
+
+
+def test_scores_are_those_computed_by_hand():
+    assert spl(record()) == pytest.approx((1.0 + 20 / 25 + 0.0) / 3)
+    other = record(building="c", found=[False] * 3, false_alarm=[False] * 3)
+    (score,) = scores([record(), other])
+    assert score.flights == 6
+    assert score.spl_by_building == [0.6, 0.0]
+    assert score.spl.value == pytest.approx(0.3)
+    assert (score.spl.low, score.spl.high) == (0.0, 0.6)  # buildings are resampled, not flights
+    assert score.success.value == pytest.approx(1 / 3, abs=1e-4)
+    assert score.false_alarms.value == pytest.approx(1 / 6, abs=1e-4)
+    assert score.median_s is None
+    assert score.found_within == [0.1667, 0.3333, 0.3333, 0.3333, 0.3333]
+    assert len(score.found_within) == len(WITHIN_S)
+    assert (score.energy_kj, score.turns, score.collisions) == (3.0, 2.0, 8)
+    assert score.step_us == pytest.approx(1e6 * 0.018 / 180)
+    (alone,) = scores([record()])
+    assert alone.median_s == 30.0
+
+
+def flights_of(cells, modes) -> Flights:
+    zeros = np.zeros(1)
+    path = np.array(cells, dtype=np.int32)
+    return Flights(
+        *(zeros > 1, zeros > 1, zeros.astype(int), zeros, zeros, zeros.astype(int), zeros, zeros),
+        mode=np.array([[modes[0], modes[-1]]]),
+        cells=(path,),
+        modes=(np.array(modes, dtype=np.int32),),
+    )
+
+
+def test_the_shortest_flight_is_that_of_one_who_knows_the_jumps_beforehand():
+    hops = np.array([[5, 2, 9]])
+    stays, near_soon = [0] * 9, [0, 0, 0, 1, 1, 1, 1, 1, 1]
+    near_too_soon = [0, 1, 0, 0, 0, 0, 0, 0, 0]
+    away_and_back = [0, 0, 0, 0, 2, 2, 2, 0, 0]
+    for modes, steps in ((stays, 5), (near_soon, 2), (near_too_soon, 5), (away_and_back, 5)):
+        assert shortest(flights_of([0] * 9, modes), hops).tolist() == [steps]
+    assert shortest(flights_of([0] * 3, [0] * 3), hops).tolist() == [5]  # ended before
+
+
+@pytest.mark.parametrize("name", ["static", "jumps"])
+def test_no_flight_beats_the_clairvoyant(mission, building, name):
+    world, task = CONDITION[name].world(mission), CONDITION[name].task
+    hops = Hypotheses.of_mission(mission, task).hops
+    for entrant in (ORACLES[0], next(e for e in ENTRANTS if e.name == "frontier search")):
+        policy = entrant.make(Briefing(CONDITION[name], entrant.knows, building, mission))
+        sight = CONDITION[name].observation(world_seen=entrant.knows == "world")
+        flights = fly(world, task, sight, policy, episodes=20)
+        assert np.all(shortest(flights, hops)[flights.found] <= flights.moves[flights.found])
+
+
+def test_oracles_have_an_spl_of_one_and_the_least_energy(tmp_path):
+    walk = next(entrant for entrant in ENTRANTS if entrant.knows == "places")
+    flown = run([*ORACLES, walk], SMALL, tmp_path, threads=1)
+    by_name = {(r.entrant, r.condition): r for r in flown}
+    for name in ("static", "battery"):
+        assert spl(by_name["oracle, fewest steps", name]) == 1.0
+        assert all(by_name["oracle, least energy", name].found)
+    energy = {r.entrant: np.array(r.energy_kj) for r in flown if r.condition == "static"}
+    least = energy.pop("oracle, least energy")
+    for others in energy.values():
+        assert np.all(least <= others + 1e-9)
+    noisy = by_name["oracle, fewest steps", "4 dB"]
+    assert all(noisy.found)
+    assert all(s >= m for s, m in zip(noisy.steps, noisy.moves, strict=True))
+    assert sum(noisy.steps) > sum(noisy.moves)  # readings in place cost time, not length
+
+
+def test_flights_begin_far_from_all_places(mission):
+    hops = Hypotheses.of_mission(mission, Task(GOAL)).hops
+    assert hops[mission.starts].min() == LEAST_STEPS
+
+
+def test_splits_have_no_building_in_common_and_are_those_that_were_frozen():
+    for a, b in combinations(FINGERPRINTS.values(), 2):
+        assert not set(a) & set(b)
+    assert [len(set(known)) for known in FINGERPRINTS.values()] == [200, 50, 50]
+    for split, known in FINGERPRINTS.items():
+        found = [building.fingerprint for building in generated(split, 2)]
+        assert [f[:8] for f in found] == known[:2]
+
+
+def test_another_building_than_the_frozen_one_is_refused(monkeypatch):
+    monkeypatch.setitem(FINGERPRINTS, "test", ["00000000"])
+    with pytest.raises(ValueError, match="test-000 is not that of the benchmark"):
+        next(generated("test", 1))
+
+
+def test_a_policy_is_told_what_its_track_allows(building, mission):
+    def briefing(knows):
+        return Briefing(CONDITION["static"], knows, building, mission)
+
+    assert np.all(briefing("RSS").layout.next_state == -1)
+    assert np.any(briefing("plan").layout.next_state >= 0)
+    assert briefing("places").hypotheses.position.shape == (len(building.places), 2)
+    for knows in ("RSS", "plan"):
+        with pytest.raises(ValueError, match="has no maps"):
+            _ = briefing(knows).hypotheses
+        with pytest.raises(ValueError, match="must not see it"):
+            briefing(knows).world_of("world")
+
+
+class Stubborn(RandomPolicy):
+    """Always flies east."""
+
+    def act(self, observation, mask):
+        return 0
+
+
+def test_impossible_actions_are_counted_and_become_hovering():
+    mission, policy = room_mission(ModeProcess.steady(4)), Guarded(Stubborn())
+    sight = CONDITION["static"].observation()
+    flights = fly(mission, Task(GOAL, "none", max_steps=30), sight, policy, episodes=1)
+    assert flights.steps[0] == 30
+    assert policy.collisions == 30 - flights.moves[0]
+    assert Guarded(Stubborn()).act(None, np.ones(8, dtype=bool)) == 0
+    assert policy.act(None, np.zeros(8, dtype=bool)) == HOVER
+
+
+WALK = Entrant("walk", "RSS", lambda _: RandomPolicy())
+EAST = Entrant("east", "RSS", lambda _: Stubborn())
+
+
+def test_an_interrupted_run_is_resumed_with_the_same_result(tmp_path):
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    broken = Entrant("east", "RSS", interrupted)
+    whole = run([WALK, EAST], SMALL, tmp_path / "whole", threads=1)
+    with pytest.raises(KeyboardInterrupt):
+        run([WALK, broken], SMALL, tmp_path / "parts", threads=1)
+    unflyable = Entrant("walk", "RSS", interrupted)  # what is finished is not flown again
+    parts = run([unflyable, EAST], SMALL, tmp_path / "parts", threads=1)
+    assert [replace(r, cpu_s=0.0) for r in parts] == [replace(r, cpu_s=0.0) for r in whole]
+
+
+def test_a_damaged_file_of_flights_is_flown_again(tmp_path):
+    before = run([EAST], SMALL, tmp_path, threads=1)
+    (file,) = (tmp_path / "flights").iterdir()
+    whole = json.loads(file.read_text())
+    for damage in (
+        "",
+        "{",
+        '{"version": 1, "records": 3}',
+        "\x00",
+        json.dumps({**whole, "seeds": 9}),
+    ):
+        file.write_text(damage)
+        after = run([EAST], SMALL, tmp_path, threads=1)
+        assert [replace(r, cpu_s=0.0) for r in after] == [replace(r, cpu_s=0.0) for r in before]
+        assert json.loads(file.read_text())["seeds"] == SMALL.seeds
+
+
+def test_plans_of_ones_own_have_transmitters_in_reach(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        floorplans.dumps(floorplans.generate("office", 5, area_m2=400.0, n_transmitters=0))
+    )
+    (building,) = own((file,))
+    mission = building.mission()
+    assert mission.n_modes == 3
+    assert Hypotheses.of_mission(mission, Task(GOAL)).hops.max() < 1000
+
+
+def test_unknown_policies_tracks_and_splits_are_named():
+    with pytest.raises(ValueError, match="expected module:function"):
+        entrant_of("nowhere:make", "RSS")
+    with pytest.raises(ValueError, match="track"):
+        entrant_of("json:loads", "everything")
+    with pytest.raises(ValueError, match="split"):
+        extent_of(FULL, "dev", None, ())
+    with pytest.raises(ValueError, match="1 to 50"):
+        extent_of(FULL, "test", 51, ())
