@@ -55,6 +55,9 @@ def run_benchmark(
         int | None,
         typer.Option(metavar="N", min=1, help="Fly in N generated buildings only, with 2 seeds."),
     ] = None,
+    seeds: Annotated[
+        int | None, typer.Option(metavar="N", min=1, max=1000, help="Another number of seeds.")
+    ] = None,
     plans: Annotated[
         list[Path] | None,
         typer.Option("--plan", metavar="FILE", help="Fly in this plan too; may be repeated."),
@@ -81,7 +84,8 @@ def run_benchmark(
     from rssnav.benchmark.submissions import merged, read_scores
 
     entrants = ENTRANTS if policy is None else (entrant_of(policy, track, name),)
-    extent = extent_of(QUICK if quick or buildings else FULL, split, buildings, plans or ())
+    whole = QUICK if quick or buildings else FULL
+    extent = extent_of(whole, split, buildings, plans or (), seeds)
     others = [read_scores(path, extent) for path in beside or ()]
     try:
         with stage_progress() as show:
