@@ -126,7 +126,13 @@ FULL = Extent()
 QUICK = Extent(generated=6, paper=False, seeds=2)
 
 
-def extent_of(whole: Extent, split: str, generated: int | None, plans: Sequence[Path]) -> Extent:
+def extent_of(
+    whole: Extent,
+    split: str,
+    generated: int | None,
+    plans: Sequence[Path],
+    seeds: int | None = None,
+) -> Extent:
     """Part of an extent, and further plans.
 
     Parameters
@@ -139,6 +145,8 @@ def extent_of(whole: Extent, split: str, generated: int | None, plans: Sequence[
         Another number of generated buildings.
     plans : sequence of Path
         Files of further plans.
+    seeds : int, optional
+        Another number of seeds.
 
     Raises
     ------
@@ -150,7 +158,13 @@ def extent_of(whole: Extent, split: str, generated: int | None, plans: Sequence[
     most = len(FINGERPRINTS[known])
     count = min(whole.generated, most) if generated is None else generated
     require(1 <= count <= most, "buildings", count, f"1 to {most} in the split {split}")
-    return replace(whole, split=known, generated=count, plans=tuple(map(str, plans)))
+    return replace(
+        whole,
+        split=known,
+        generated=count,
+        plans=tuple(map(str, plans)),
+        seeds=seeds or whole.seeds,
+    )
 
 
 def flights_of_a_seed(site: Site) -> int:
