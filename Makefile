@@ -76,6 +76,10 @@ bench-fields: install ## measure an unknown polarisation and a further frequency
 bench-loss: install ## measure limits by loss beside a number of transmissions, for docs/performance.md
 	$(BIN)/python tests/benchmarks/loss_limits.py
 
+bench-policies: install ## fly the benchmark's policies in all its buildings, for docs/benchmark.md (an hour; QUICK=1: 3 minutes)
+	$(BIN)/rssnav benchmark --out $(RESULTS)/benchmark $(if $(QUICK),--quick)
+	$(BIN)/python tests/benchmarks/leaderboard.py $(RESULTS)/benchmark/results.json
+
 docs: install ## build the documentation into docs/_build/html
 	@rm -rf docs/api/generated
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
