@@ -93,7 +93,7 @@ COMMANDS = {
     ),
     "benchmark": Entry(
         ("benchmark",),
-        "Fly policies in generated buildings that they have not seen, and score them.",
+        "Fly policies in buildings that they have not seen, and score them.",
     ),
     "doctor": Entry(
         ("doctor",),

@@ -12,7 +12,7 @@ from documents import ROOT
 PAGE = (ROOT / "docs" / "cli.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^## rssnav ([a-z ]+)\n(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 SECTIONS = dict(SECTION.findall(PAGE))
-LONG = ("maps", "explore", "experiments", "report")
+LONG = ("benchmark", "maps", "explore", "experiments", "report")
 
 
 COMMANDS = all_commands()

@@ -67,7 +67,7 @@ def test_every_public_name_is_there_and_no_other() -> None:
 
 
 EXAMPLES = {name: command.epilog for name, command in all_commands().items()}
-LONG = {"maps", "experiments", "report", "explore", "calibrate"}
+LONG = {"benchmark", "maps", "experiments", "report", "explore", "calibrate"}
 """Commands that take long or do not end; their examples are parsed only."""
 
 
