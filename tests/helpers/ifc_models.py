@@ -89,6 +89,25 @@ class Model:
         spatial.assign_container(f, products=[column], relating_structure=self.storey)
         return column
 
+    def add_curtain_wall(self, length_m: float, step_m: float, height_m: float = 2.7):
+        """Add a curtain wall of plates and mullions 0.15 m deep, along x from (0, 0)."""
+        f, metre = self.file, self.metre
+        curtain = root.create_entity(f, ifc_class="IfcCurtainWall")
+        self._place(curtain, (0.0, 0.0), (1.0, 0.0), 0.0)
+        spatial.assign_container(f, products=[curtain], relating_structure=self.storey)
+        n = round(length_m / step_m)
+        parts = [("IfcPlate", (k + 0.5) * step_m, step_m - 0.05, 0.02) for k in range(n)]
+        parts += [("IfcMember", k * step_m, 0.05, 0.15) for k in range(n + 1)]
+        for ifc_class, x, *sides in parts:
+            part = root.create_entity(f, ifc_class=ifc_class)
+            axes = f.createIfcAxis2Placement2D(f.createIfcCartesianPoint((0.0, 0.0)))
+            sizes = [side * metre for side in sides]
+            self._give_body(
+                part, f.createIfcRectangleProfileDef("AREA", None, axes, *sizes), height_m
+            )
+            self._place(part, (x, 0.0), (1.0, 0.0), 0.0)
+            aggregate.assign_object(f, products=[part], relating_object=curtain)
+
     def add_wall_of_faces(self, start: Point, end: Point, thickness_m: float, height_m: float):
         """Add a wall along x or y whose body is six faces."""
         wall = root.create_entity(self.file, ifc_class="IfcWall")

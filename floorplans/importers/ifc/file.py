@@ -145,7 +145,7 @@ def storey_of(model: Model, level: str | None, metre: float) -> Storey:
     PlanError
         When there is none, or the choice is ambiguous; the message lists them.
     """
-    storeys = _storeys(model, metre)
+    storeys = storeys_of(model, metre)
     if not storeys:
         n_walls = len(model.by_type("IfcWall"))
         raise PlanError(
@@ -169,7 +169,7 @@ def storey_of(model: Model, level: str | None, metre: float) -> Storey:
     return matching[0]
 
 
-def _storeys(model: Model, metre: float) -> list[Storey]:
+def storeys_of(model: Model, metre: float) -> list[Storey]:
     """All storeys, lowest first."""
     found = [
         Storey(

@@ -26,10 +26,11 @@ from floorplans.georeference import GeoOrigin
 from floorplans.importers.draft import Draft, ImportOptions, LayerUse, RawOpening
 from floorplans.importers.ifc.columns import is_in_wall, read_column
 from floorplans.importers.ifc.curves import Entity
-from floorplans.importers.ifc.file import Model, Storey, open_model, scale_of, storey_of
+from floorplans.importers.ifc.file import Model, Storey, open_model, scale_of, storey_of, storeys_of
 from floorplans.importers.ifc.materials import Materials
+from floorplans.importers.ifc.parts import parts_of
 from floorplans.importers.ifc.shapes import Body, Scale, bodies
-from floorplans.importers.ifc.walls import ReadWall, read_filling, read_wall
+from floorplans.importers.ifc.walls import ReadWall, read_filling, read_wall, rises_through
 from floorplans.importers.layer_names import unmatched
 from floorplans.importers.original import DrawnLayer, Original
 from floorplans.importers.progress import Report, Step, no_report
@@ -84,7 +85,9 @@ def read_ifc(path: Path, options: ImportOptions, report: Report = no_report) -> 
 
 def _read_storey(model: Model, path: Path, options: ImportOptions) -> Draft:
     scale = scale_of(model, options)
-    storey = storey_of(model, options.level, scale.metre)
+    storey, n_rising = _with_rising_walls(
+        model, storey_of(model, options.level, scale.metre), scale
+    )
     if len(storey.walls) > MAX_WALLS:
         raise PlanError(f"{len(storey.walls)} walls, more than the {MAX_WALLS} of one storey")
     floor_m = storey.elevation_m
@@ -114,12 +117,33 @@ def _read_storey(model: Model, path: Path, options: ImportOptions) -> Draft:
         floor_material=None if floor is None else materials.of_slab(floor),
         ceiling_material=None if ceiling is None else materials.of_slab(ceiling),
         georeference=_georeference(model),
-        notes=tuple(unmatched(options.layers, materials.names)),
+        notes=(*_rising_note(n_rising), *unmatched(options.layers, materials.names)),
         layers=tuple(_uses(storey, read, remarks)),
         materials=materials.own,
         assumed=tuple(materials.assumed()),
         original=_original(storey, scale),
     )
+
+
+def _with_rising_walls(model: Model, storey: Storey, scale: Scale) -> tuple[Storey, int]:
+    """Add walls and columns of lower storeys that rise through a storey; also their number."""
+    own = {element.id() for element in storey.elements}
+    rising = tuple(
+        element
+        for lower in storeys_of(model, scale.metre)
+        if lower.elevation_m < storey.elevation_m
+        for element in (*lower.walls, *(e for e in lower.elements if e.is_a("IfcColumn")))
+        if element.id() not in own and rises_through(element, storey.elevation_m, scale)
+    )
+    return replace(storey, elements=(*storey.elements, *rising)), len(rising)
+
+
+def _rising_note(n_rising: int) -> Iterator[str]:
+    if n_rising:
+        yield (
+            f"{n_rising} walls and columns of lower storeys rise through "
+            "this storey, and are part of it"
+        )
 
 
 def _columns(
@@ -147,6 +171,7 @@ def _columns(
 def _original(storey: Storey, scale: Scale) -> Original:
     """Footprints of the storey's elements by class, except of slabs, which cover everything."""
     shapes: dict[str, list[BaseGeometry]] = {}
+    in_curtains = _parts_of_curtain_walls(storey)
     for element in storey.elements[:_MOST_SHOWN]:
         kind = element.is_a()
         if kind in (*_SLABS, "IfcOpeningElement"):
@@ -156,7 +181,10 @@ def _original(storey: Storey, scale: Scale) -> Original:
     return Original(
         tuple(
             DrawnLayer(
-                kind, _BECAME.get(kind, "left out"), kind in _BECAME, GeometryCollection(own)
+                kind,
+                _BECAME.get(kind, "left out"),
+                kind in _BECAME or kind in in_curtains,
+                GeometryCollection(own),
             )
             for kind, own in sorted(shapes.items())
         )
@@ -254,13 +282,24 @@ def _uses(
 ) -> Iterator[LayerUse]:
     """Yield what became of each class of elements."""
     unread = Counter(wall.is_a() for wall, got in zip(storey.walls, read, strict=True) if not got)
+    in_curtains = _parts_of_curtain_walls(storey)
     for kind, count in sorted(Counter(element.is_a() for element in storey.elements).items()):
         became = _BECAME.get(kind, "left out")
+        if kind not in _BECAME and in_curtains[kind] == count:
+            became = "parts of curtain walls"
         if unread[kind]:
             became += f"; {unread[kind]} without a readable shape, or not on this floor, left out"
         if kind.startswith("IfcColumn"):
             became += "".join(f"; {n} {remark}" for remark, n in columns.items())
         yield LayerUse(kind, count, became)
+
+
+def _parts_of_curtain_walls(storey: Storey) -> Counter[str]:
+    """Number of plates, mullions and so on of each class in a storey's curtain walls."""
+    curtains = [wall for wall in storey.walls if wall.is_a("IfcCurtainWall")]
+    return Counter(
+        kind for kind, _ in {(part.is_a(), part.id()) for w in curtains for part in parts_of(w)}
+    )
 
 
 _BECAME = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import hypot
+from math import dist, hypot
 
 import numpy as np
 import shapely
@@ -30,6 +30,10 @@ MIN_TOP_M = 0.3
 MAX_FOOT_M = 1.0
 """Largest height of a wall's foot above the floor; higher ones stand on something else [m]."""
 
+_RISES_M = 1.8
+"""Least height over the floor of a wall of a lower storey that is a wall of this one too [m]."""
+_MULLION_M = 0.3
+"""Shorter pieces of a curtain wall are the depth of its mullions [m]."""
 _STRAIGHT_FRACTION = 0.85
 _PASSAGE_FOOT_M = 0.1
 _BENT_M = 0.01
@@ -66,6 +70,8 @@ def read_wall(wall: Entity, floor_m: float, scale: Scale, materials: Materials) 
     if wall.is_a("IfcCurtainWall"):
         material, layers_m = material or WINDOW_MATERIAL, layers_m or WINDOW_THICKNESS_M
     lines = list(_centre_lines(axis, footprint, layers_m, scale.chord_m))
+    if wall.is_a("IfcCurtainWall"):
+        lines = [line for line in lines if dist(line[0], line[1]) > _MULLION_M] or lines
     if not lines or not np.isfinite([ends for *ends, _ in lines]).all():
         return None
     pieces = [
@@ -103,6 +109,21 @@ def top_on_floor(parts: Sequence[Body], floor_m: float) -> float | None:
     top_m = max(body.z_max for body in parts) - floor_m
     foot_m = min(body.z_min for body in parts) - floor_m
     return None if top_m < MIN_TOP_M or foot_m > MAX_FOOT_M else top_m
+
+
+def rises_through(element: Entity, floor_m: float, scale: Scale) -> bool:
+    """Whether an element of a lower storey goes on through the floor to more than a door's height.
+
+    Parameters
+    ----------
+    element : entity
+    floor_m : float
+        Elevation of the floor [m].
+    scale : Scale
+    """
+    parts = bodies_of_parts(element, scale)
+    top_m = top_on_floor(parts, floor_m) if parts else None
+    return top_m is not None and top_m > _RISES_M
 
 
 def bodies_of_parts(element: Entity, scale: Scale) -> list[Body]:

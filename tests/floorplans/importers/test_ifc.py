@@ -343,6 +343,43 @@ def test_round_column_is_as_wide_as_it_is(tmp_path) -> None:
     assert area == pytest.approx(pi * 0.3**2, rel=0.1)
 
 
+def test_mullions_of_a_curtain_wall_are_part_of_it(tmp_path) -> None:
+    model = Model()
+    model.add_storey("Ground floor")
+    for start, end in pairwise([(9.0, 0.0), (9.0, 6.0), (0.0, 6.0), (0.0, 0.0)]):
+        model.add_wall(start, end, 0.3)
+    model.add_curtain_wall(9.0, 1.5)
+    imported = import_plan(model.write(tmp_path / "front.ifc"))
+    (glass,) = (wall for wall in imported.plan.walls if wall.material == "glass")
+    assert glass.length_m == pytest.approx(9.0, abs=0.05)
+    assert len(imported.plan.walls) == 4
+    assert not [change for change in imported.changes if change.kind == "dropped"]
+    became = {use.name: use.became for use in imported.layers}
+    assert became["IfcPlate"] == became["IfcMember"] == "parts of curtain walls"
+
+
+@pytest.mark.parametrize("rises_m", [1.0, 2.9])
+def test_walls_of_a_lower_storey_that_rise_through_this_one_are_part_of_it(
+    tmp_path, rises_m: float
+) -> None:
+    model = Model()
+    model.add_storey("Ground floor")
+    ring = model.add_ring(HOUSE, thickness_m=0.3, height_m=3.0 + rises_m)
+    model.add_filling(model.add_hole(ring[0], 2.0, 1.0, 0.0, 2.1), "IfcDoor")
+    model.add_filling(model.add_hole(ring[0], 5.0, 1.2, 3.9, 5.1), "IfcWindow")
+    model.add_storey("First floor", 3.0)
+    inner: list[Point] = [(1.0, 1.0), (5.0, 1.0), (5.0, 4.0), (1.0, 4.0)]
+    model.add_ring(inner, thickness_m=0.1, height_m=2.9)
+    imported = import_plan(model.write(tmp_path / "high.ifc"), ImportOptions(level="First floor"))
+    if rises_m < 1.8:  # a parapet
+        assert imported.plan.outline.area == pytest.approx(12.0)
+        assert imported.notes == ()
+        return
+    assert imported.plan.outline.area == pytest.approx(40.0)
+    assert openings_of(imported.plan) == [("window", 1.2, pytest.approx(0.9), 2.1)]
+    assert imported.notes[0].startswith("4 walls and columns of lower storeys rise through")
+
+
 def test_curtain_wall_without_material_is_glass(tmp_path) -> None:
     model = Model()
     model.add_storey("Hall")
