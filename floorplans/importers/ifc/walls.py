@@ -34,6 +34,8 @@ _RISES_M = 1.8
 """Least height over the floor of a wall of a lower storey that is a wall of this one too [m]."""
 _MULLION_M = 0.3
 """Shorter pieces of a curtain wall are the depth of its mullions [m]."""
+_CURTAIN_M = 0.5
+"""Largest depth of the mullions of a straight curtain wall [m]."""
 _STRAIGHT_FRACTION = 0.85
 _PASSAGE_FOOT_M = 0.1
 _BENT_M = 0.01
@@ -69,9 +71,9 @@ def read_wall(wall: Entity, floor_m: float, scale: Scale, materials: Materials) 
     material, layers_m = materials.of_wall(wall)
     if wall.is_a("IfcCurtainWall"):
         material, layers_m = material or WINDOW_MATERIAL, layers_m or WINDOW_THICKNESS_M
-    lines = list(_centre_lines(axis, footprint, layers_m, scale.chord_m))
-    if wall.is_a("IfcCurtainWall"):
-        lines = [line for line in lines if dist(line[0], line[1]) > _MULLION_M] or lines
+        lines = list(_curtain_lines(axis, footprint, layers_m, scale.chord_m))
+    else:
+        lines = list(_centre_lines(axis, footprint, layers_m, scale.chord_m))
     if not lines or not np.isfinite([ends for *ends, _ in lines]).all():
         return None
     pieces = [
@@ -158,6 +160,24 @@ def _centre_lines(
             return
         for raw in walls_of_area(footprint, chord_m):
             yield raw.start, raw.end, raw.thickness_m
+
+
+def _curtain_lines(
+    axis: Floats, footprint: BaseGeometry, layers_m: float, chord_m: float
+) -> Iterator[Line]:
+    """Centre lines of a curtain wall: panes are thinner than arcs are exact, and mullions deeper.
+
+    A straight one lies in the middle of its mullions.
+    """
+    is_bent = len(axis) > 2 and _bend(axis) > _BENT_M
+    if footprint.area > 0 and not is_bent:
+        line, _ = _middle_of(footprint, _long_side(footprint))
+        if (line[2] or 0.0) <= _CURTAIN_M:
+            yield line
+            return
+        footprint = footprint.buffer(chord_m, join_style="mitre")
+    lines = list(_centre_lines(axis, footprint, layers_m, chord_m))
+    yield from [line for line in lines if dist(line[0], line[1]) > _MULLION_M] or lines
 
 
 def _middle_of(footprint: BaseGeometry, along: Floats) -> tuple[Line, float]:
