@@ -1,4 +1,4 @@
-"""The reconstructed floor plans keep what the paper fixes, and its lengths can be flown in them."""
+"""The reconstructed floor plans keep what the paper fixes, and its flights exist in them."""
 
 from functools import cache
 from itertools import product
@@ -11,7 +11,9 @@ from shapely.geometry import MultiLineString
 import floorplans
 from floorplans import FloorPlan
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
-from rssnav import GridWorld, shortest_path
+from rssnav import GridWorld
+from rssnav.experiments.studies.plan_search.constraints import allows_printed_flights
+from rssnav.experiments.studies.plan_search.families import draw
 
 FLYING_HEIGHT_M = 2.0
 GOAL_DISTANCE_M = 2.0
@@ -22,19 +24,10 @@ STATED = {
     "scenario2": ((76.0, 58.0), (4.0, 4.0, 1.5), (74, 55)),
 }
 
-# Shortest final trajectory the paper reports at each speed [m], either agent.
-PAPER_SHORTEST_M = {
-    ("scenario1", 1): 94.70,
-    ("scenario1", 2): 101.25,
-    ("scenario1", 4): 98.63,
-    ("scenario2", 1): 119.71,
-    ("scenario2", 2): 121.05,
-    ("scenario2", 4): 114.63,
-}
-ROUNDING_M = 0.005
+# Block and number of the drawing in the search for floor plans, with seed 0.
+DRAWN_AS = {"scenario1": (11, 130), "scenario2": (13, 214)}
 
 scenarios = pytest.mark.parametrize("name", sorted(STATED))
-flights = pytest.mark.parametrize(("name", "speed"), sorted(PAPER_SHORTEST_M))
 
 
 @cache
@@ -105,12 +98,20 @@ def test_a_uav_can_fly_into_every_room(name: str) -> None:
     assert world_without_radio(name, 1).n_states == n_cells
 
 
-@flights
-def test_the_papers_shortest_length_can_be_flown(name: str, speed: int) -> None:
-    world = world_without_radio(name, speed)
-    goal = world.distance_m < GOAL_DISTANCE_M
-    shortest = shortest_path(world, goal, cost="metres")
-    assert shortest.length_m < PAPER_SHORTEST_M[name, speed] + ROUNDING_M
+@scenarios
+def test_the_printed_flights_exist_and_none_is_shorter(name: str) -> None:
+    assert allows_printed_flights(floorplans.load(name), int(name[-1]))
+
+
+@scenarios
+def test_the_plan_is_the_one_that_the_search_draws(name: str) -> None:
+    block, number = DRAWN_AS[name]
+    scenario = int(name[-1])
+    rng = np.random.default_rng((0, scenario, block))
+    for _ in range(number + 1):
+        plan = draw(scenario, rng)
+    assert plan is not None
+    assert set(plan.walls) == set(floorplans.load(name).walls)
 
 
 def test_scenario_1_is_the_simpler_one() -> None:

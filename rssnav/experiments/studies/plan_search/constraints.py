@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raytrace import Grid
+from rssnav.agents import RssAgent
 from rssnav.experiments.paper.counting import SUPPORTED_COUNT
 from rssnav.experiments.paper.data import AGENTS, Configuration
 from rssnav.experiments.paper.scenarios import SPEEDS
@@ -23,9 +24,12 @@ from rssnav.missions.layout import ACTIONS, Layout
 
 if TYPE_CHECKING:
     from floorplans import FloorPlan
+    from raytrace import RadioMap
 
 UNKNOWN = Configuration(2, "rss", 2)
 """Its printed length, 121.65 m, is no flight's, so no flight of it is required."""
+
+PAPERS_AGENT = RssAgent()
 
 
 @cache
@@ -67,6 +71,33 @@ def _allows(plan: FloorPlan, scenario: int, speed: int) -> bool:
     return found.least_steps == fewest_wanted(scenario, speed) and all(
         found.has(counts, SUPPORTED_COUNT) for counts in required
     )
+
+
+def has_the_stated_map(plan: FloorPlan, radio_map: RadioMap) -> bool:
+    """Whether a plan's map is such as the paper says of its maps.
+
+    Every cell can be flown to and is heard, no two cells read the same, since each reading is a
+    state, and more than -21 dBm are read exactly at the cells of the goal, D < 2 m.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        With source and start.
+    radio_map : RadioMap
+        Its map.
+
+    Returns
+    -------
+    bool
+    """
+    rss_dbm = radio_map.rss_dbm
+    if rss_dbm.min() <= PAPERS_AGENT.sensitivity_dbm or np.unique(rss_dbm).size < rss_dbm.size:
+        return False
+    layout = Layout.of_plan(plan, radio_map.grid)
+    near = STATED_GOAL.contains(layout.distance_m(*plan.require_source()[:2]))
+    ends_flights = rss_dbm.ravel() > PAPERS_AGENT.terminal_dbm
+    reached = layout.reachable(layout.nearest(*plan.require_start()))
+    return np.array_equal(ends_flights, near) and reached.size == rss_dbm.size
 
 
 def arrivals(plan: FloorPlan, speed: int, most_steps: int) -> Arrivals:

@@ -16,7 +16,10 @@ from rssnav.experiments.paper.data import AGENTS, Configuration, flights
 from rssnav.experiments.paper.printed_values import PATH_LENGTH_M
 from rssnav.experiments.paper.scenarios import SPEEDS
 from rssnav.experiments.paper.trainings import EPISODE_LIMIT, STEP_LIMIT
-from rssnav.experiments.studies.plan_search.constraints import allows_printed_flights
+from rssnav.experiments.studies.plan_search.constraints import (
+    allows_printed_flights,
+    has_the_stated_map,
+)
 from rssnav.experiments.studies.plan_search.families import draw
 from rssnav.experiments.studies.study import Conditions
 from rssnav.experiments.training_store import TrainingStore
@@ -104,8 +107,7 @@ class Fit:
 def measure(piece: Piece, conditions: Conditions) -> list[Fit]:
     """Draw the plans of a piece, and train in those that meet all conditions.
 
-    They allow the printed flights, and every cell has a path, as each state of the paper's agent
-    has its RSS.
+    They allow the printed flights and have a map such as the paper says.
 
     Raises
     ------
@@ -115,7 +117,7 @@ def measure(piece: Piece, conditions: Conditions) -> list[Fit]:
     fits: list[Fit] = []
     for number, plan in _plans(piece, conditions.seed):
         radio_map = _kept_map(piece, number, plan, conditions.store)
-        if np.isfinite(radio_map.rss_dbm).all():
+        if has_the_stated_map(plan, radio_map):
             fits.append(_fit(piece, number, plan, radio_map, conditions))
     return fits
 
