@@ -5,12 +5,17 @@ To add one, list it in the module of its subject; a new subject gets a module, l
 
 from collections.abc import Sequence
 
-from rssnav.experiments.paper.claims import convergence, flights, learning
+from rssnav.experiments.paper.claims import compartments, convergence, flights, learning
 from rssnav.experiments.paper.claims.verdicts import Case, Claim, ClaimResult, Verdict
 from rssnav.experiments.paper.data import PaperData
 from rssnav.experiments.tables import Cell, Column, Table
 
-CLAIMS: tuple[Claim, ...] = (*flights.CLAIMS, *learning.CLAIMS, *convergence.CLAIMS)
+CLAIMS: tuple[Claim, ...] = (
+    *flights.CLAIMS,
+    *compartments.CLAIMS,
+    *learning.CLAIMS,
+    *convergence.CLAIMS,
+)
 """All claims, in the paper's order of subjects."""
 
 __all__ = ["CLAIMS", "Case", "Claim", "ClaimResult", "Verdict", "claims_table", "examine"]

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 from small_paper import small_data
 
+import floorplans
+from floorplans import Wall
 from rssnav.experiments.paper.claims import CLAIMS, ClaimResult, Verdict, claims_table, examine
+from rssnav.experiments.paper.claims.compartments import compartments
 from rssnav.experiments.paper.claims.flights import mean_rss_dbm, strong_percentage, turns
 from rssnav.experiments.paper.claims.learning import fluctuation
 from rssnav.experiments.paper.claims.verdicts import between, case, positive
@@ -283,3 +286,31 @@ def test_all_agents_and_speeds_are_examined():
     for key in small_data().results:
         assert key.label in names
     assert len(small_data().results) == 2 * len(AGENTS) * len(SPEEDS)
+
+
+def test_compartments_are_the_rooms_behind_doors():
+    """Those of Scenario 2: eight rooms of its blocks and two store rooms, no hallways."""
+    rooms = compartments(floorplans.load("scenario2"))
+    assert len(rooms.geoms) == 10
+    areas = sorted(round(room.area) for room in rooms.geoms)
+    assert areas == [78, 78, 186, 186, 186, 200, 200, 220, 440, 540]
+
+
+def test_flights_through_a_compartment_are_told_from_those_around_it():
+    """A wall across the building, and one flight through the room that it makes."""
+    data = small_data()
+    plan = data.scenarios[2].plan
+    assert compartments(plan).is_empty
+    assert verdict("location-enters-compartments", data) is OPEN
+    west = Wall((9.0, 0.0), (9.0, 12.0), "plasterboard", 0.1, 3.0)
+    east = replace(west, start=(15.0, 0.0), end=(15.0, 12.0))
+    across = replace(plan, walls=(*plan.walls, west, east))
+    corner = replace(west, start=(0.0, 1.0), end=(1.0, 0.0))
+    beside = replace(plan, walls=(*plan.walls, corner))
+    cases = {}
+    for name, walled in (("across", across), ("beside", beside)):
+        scenarios = {**data.scenarios, 2: replace(data.scenarios[2], plan=walled)}
+        (claim,) = (c for c in CLAIMS if c.key == "location-enters-compartments")
+        cases[name] = [c.verdict for c in claim.cases(replace(data, scenarios=scenarios))]
+    assert cases["across"] == [YES, NO, NO]
+    assert cases["beside"] == [NO, YES, YES]
