@@ -7,11 +7,14 @@ Importing the drawing restores the walls and openings, but not the heights.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from io import StringIO
 from math import atan2, degrees
 from pathlib import Path
 
 import ezdxf
+import numpy as np
+import shapely
 from ezdxf import units
 from ezdxf.document import Drawing
 from ezdxf.layouts.layout import Modelspace
@@ -20,12 +23,14 @@ from ezdxf.math import Matrix44
 from floorplans.exporters.formats import ExportOptions, Files
 from floorplans.pictures.symbols import DOUBLE_DOOR_M, WallStrips
 from floorplans.plan import FloorPlan
-from floorplans.walls import Opening, OpeningKind, Wall
+from floorplans.walls import TOLERANCE_M, Opening, OpeningKind, Wall, centre_lines
 
 LAYERS: dict[OpeningKind, str] = {"door": "DOOR", "window": "WINDOW", "passage": "DOOR-PASSAGE"}
 
 _WIDEST_SWING_M = 3.6
 _MIN_THICKNESS_M = 0.001
+_SAME_DIRECTION = 0.1
+"""Walls are across each other beyond this sine of the angle between them."""
 _RED, _BLUE, _GREEN, _GREY, _MAGENTA = 1, 5, 3, 8, 6
 
 
@@ -36,11 +41,11 @@ def render_dxf(plan: FloorPlan, path: Path, _options: ExportOptions) -> Files:
     _add_layers(document, plan)
     _add_blocks(document)
     space = document.modelspace()
-    strips = WallStrips(plan, _MIN_THICKNESS_M)
+    strips, across = WallStrips(plan, _MIN_THICKNESS_M), _WallsAcross(plan.walls)
     for wall in plan.walls:
         _draw_wall(space, wall, strips)
         for opening in wall.openings:
-            _insert(space, wall, opening)
+            _insert(space, wall, opening, _block(opening, across.meets(wall, opening)))
     if plan.source is not None:
         space.add_point(plan.source, dxfattribs={"layer": "SOURCE"})
     for transmitter in plan.transmitters:
@@ -97,10 +102,9 @@ def _draw_wall(space: Modelspace, wall: Wall, strips: WallStrips) -> None:
     space.add_line(wall.start, wall.end, dxfattribs={"layer": "AXIS"})
 
 
-def _insert(space: Modelspace, wall: Wall, opening: Opening) -> None:
+def _insert(space: Modelspace, wall: Wall, opening: Opening, block: str) -> None:
     """Insert an opening's block: a swing as wide as it is, or a box that fills the wall."""
     (x0, y0), (x1, y1) = wall.start, wall.end
-    block = _block(opening)
     swings = block in ("DOOR", "DOOR-DOUBLE")
     space.add_blockref(
         block,
@@ -114,7 +118,36 @@ def _insert(space: Modelspace, wall: Wall, opening: Opening) -> None:
     )
 
 
-def _block(opening: Opening) -> str:
-    if opening.kind != "door" or opening.width_m <= DOUBLE_DOOR_M:
+def _block(opening: Opening, meets_wall: bool) -> str:
+    """Name of an opening's block; no leaf swings into a wall across, which would hide it."""
+    if opening.kind != "door":
         return LAYERS[opening.kind]
-    return "DOOR-DOUBLE" if opening.width_m <= _WIDEST_SWING_M else "DOOR-WIDE"
+    if opening.width_m > _WIDEST_SWING_M or meets_wall:
+        return "DOOR-WIDE"
+    return "DOOR-DOUBLE" if opening.width_m > DOUBLE_DOOR_M else LAYERS["door"]
+
+
+class _WallsAcross:
+    """Finds whether openings reach to a wall across their own."""
+
+    def __init__(self, walls: Sequence[Wall]) -> None:
+        self._walls = walls
+        self._tree = shapely.STRtree(centre_lines(walls))
+        self._reach_m = max((wall.thickness_m for wall in walls), default=0.0) / 2 + TOLERANCE_M
+
+    def meets(self, wall: Wall, opening: Opening) -> bool:
+        """Whether a jamb of a wall's opening stands in the body of a wall across."""
+        ends_m = opening.offset_m, opening.offset_m + opening.width_m
+        jambs = shapely.points([wall.point_at(end_m) for end_m in ends_m])
+        return any(
+            _cross(wall, self._walls[i])
+            and jambs[k].distance(self._tree.geometries[i])
+            <= self._walls[i].thickness_m / 2 + TOLERANCE_M
+            for k, i in self._tree.query(jambs, "dwithin", distance=self._reach_m).T
+        )
+
+
+def _cross(wall: Wall, other: Wall) -> bool:
+    """Whether walls run in clearly different directions."""
+    (ax, ay), (bx, by) = (np.subtract(w.end, w.start) / w.length_m for w in (wall, other))
+    return bool(abs(ax * by - ay * bx) > _SAME_DIRECTION)

@@ -6,7 +6,8 @@ from itertools import product
 import numpy as np
 import pytest
 import shapely
-from shapely.geometry import MultiLineString
+from shapely.geometry import LineString, MultiLineString
+from shapely.geometry.base import BaseGeometry
 
 import floorplans
 from floorplans import FloorPlan
@@ -111,7 +112,25 @@ def test_the_plan_is_the_one_that_the_search_draws(name: str) -> None:
     for _ in range(number + 1):
         plan = draw(scenario, rng)
     assert plan is not None
-    assert set(plan.walls) == set(floorplans.load(name).walls)
+    assert drawing(plan) == drawing(floorplans.load(name))
+
+
+def drawing(plan: FloorPlan) -> tuple[dict[str, BaseGeometry], set[tuple[object, ...]]]:
+    """Lines of each material, whatever walls they are divided into, and where all doors are."""
+    lines: dict[str, list[LineString]] = {}
+    doors: set[tuple[object, ...]] = set()
+    for wall in plan.walls:
+        lines.setdefault(wall.material, []).append(LineString([wall.start, wall.end]))
+        for o in wall.openings:
+            jambs = (wall.point_at(at) for at in (o.offset_m, o.offset_m + o.width_m))
+            doors.add((*sorted(jambs), o.sill_m, o.head_m))
+    merged = {name: shapely.normalize(union_of(parts)) for name, parts in lines.items()}
+    return merged, doors
+
+
+def union_of(lines: list[LineString]) -> BaseGeometry:
+    """One geometry of lines, without the points at which they only continue."""
+    return shapely.simplify(shapely.line_merge(shapely.union_all(lines)), 0.0)
 
 
 def test_scenario_1_is_the_simpler_one() -> None:

@@ -5,10 +5,10 @@ from dataclasses import replace
 import ezdxf
 import numpy as np
 import pytest
-from small_plans import ROOM
+from small_plans import ROOM, box
 
 import floorplans
-from floorplans import FloorPlan
+from floorplans import FloorPlan, Opening, Wall
 from floorplans.exporters import export
 from floorplans.importers import ImportOptions, import_plan
 
@@ -50,6 +50,21 @@ def test_walls_come_back_to_a_millimetre(name: str, tmp_path) -> None:
         assert back.thickness_m == pytest.approx(wall.thickness_m, abs=1e-3)
         if wall.material in ("brick", "concrete", "plasterboard", "glass", "wood", "metal"):
             assert back.material == wall.material
+        assert middles(back, again) == middles(wall, plan)
+
+
+@pytest.mark.parametrize("offset_m", [0.0, 1.0, 3.0, 4.0 - 0.8])
+@pytest.mark.parametrize("width_m", [0.8, 1.0])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_door_against_a_wall_across_comes_back(tmp_path, offset_m, width_m, side) -> None:
+    """Its leaf would swing into that wall, where it cannot be told from the opening."""
+    ends = [(3.0, 0.0), (3.0, 4.0)][::side]
+    door = Opening(min(offset_m, 4.0 - width_m), width_m, 0.0, 2.1, "door")
+    partition = Wall(*ends, "brick", 0.1, 3.0, (door,))
+    plan = box((partition,))
+    again = reimported(plan, tmp_path)
+    for wall, back, off_m in matched(plan, again):
+        assert off_m < 1e-3
         assert middles(back, again) == middles(wall, plan)
 
 
