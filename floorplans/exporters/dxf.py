@@ -141,7 +141,7 @@ class _WallsAcross:
         jambs = shapely.points([wall.point_at(end_m) for end_m in ends_m])
         return any(
             _cross(wall, self._walls[i])
-            and jambs[k].distance(self._tree.geometries[i])
+            and float(shapely.distance(jambs[k], self._tree.geometries[i]))
             <= self._walls[i].thickness_m / 2 + TOLERANCE_M
             for k, i in self._tree.query(jambs, "dwithin", distance=self._reach_m).T
         )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from floorplans import FloorPlan
 from rssnav.experiments.paper.claims.verdicts import Case, Claim, between, case, undecided
-from rssnav.experiments.paper.data import AGENT_LABELS, AGENTS, PaperData, flights
+from rssnav.experiments.paper.data import AGENT_LABELS, PaperData, flights
 from rssnav.experiments.statistics import mean
 from rssnav.results import TrainingResult
 
@@ -42,13 +42,17 @@ def _cases(data: PaperData) -> Iterator[Case]:
     for speed in data.speeds:
         expected = "enters" if speed < ENTERED_BELOW else "avoids"
         name = f"Scenario {SCENARIO}, {speed} m/s, {expected} compartments"
-        entered = {agent: enters(plan, data.result(SCENARIO, agent, speed)) for agent in AGENTS}
-        if entered["location"].size == 0 or compartments(plan).is_empty:
+        location, rss = (
+            enters(plan, data.result(SCENARIO, agent, speed)) for agent in ("location", "rss")
+        )
+        if location.size == 0 or compartments(plan).is_empty:
             yield undecided(name)
             continue
+        compared = [(AGENT_LABELS["location"], float(location.mean()))]
+        if rss.size:
+            compared.append((AGENT_LABELS["rss"], float(rss.mean())))
         decide = between(0.5, 1.0) if speed < ENTERED_BELOW else between(0.0, 0.5)
-        compared = [(AGENT_LABELS[a], float(e.mean())) for a, e in entered.items() if e.size]
-        yield case(name, compared, mean(entered["location"]), decide)
+        yield case(name, compared, mean(location), decide)
 
 
 CLAIMS = (
