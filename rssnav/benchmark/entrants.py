@@ -165,6 +165,22 @@ ENTRANTS = (
 "train"."""
 
 
+def entrants_of(track: str | None) -> tuple[Entrant, ...]:
+    """Policies that come with the benchmark: all, or those of a track.
+
+    Raises
+    ------
+    ValueError
+        For an unknown track.
+    """
+    return tuple(e for e in ENTRANTS if track is None or e.knows == _known(track))
+
+
+def _known(track: str) -> Knows:
+    require(track in get_args(Knows), "track", track, ", ".join(map(repr, get_args(Knows))))
+    return cast(Knows, track)
+
+
 def entrant_of(text: str, knows: str, name: str | None = None) -> Entrant:
     """Entrant of a function ``module:function`` that makes a policy from a `Briefing`.
 
@@ -173,7 +189,7 @@ def entrant_of(text: str, knows: str, name: str | None = None) -> Entrant:
     ValueError
         Unless there is such a function and track.
     """
-    require(knows in get_args(Knows), "track", knows, ", ".join(map(repr, get_args(Knows))))
+    track = _known(knows)
     module, _, function = text.partition(":")
     if "" not in sys.path:
         sys.path.insert(0, "")  # modules of the current folder
@@ -184,7 +200,7 @@ def entrant_of(text: str, knows: str, name: str | None = None) -> Entrant:
             f"policy {text!r}: {error}; expected module:function with a function that takes a "
             "Briefing and returns a policy"
         ) from error
-    return Entrant(name or function, cast(Knows, knows), make)
+    return Entrant(name or function, track, make)
 
 
 class Guarded:

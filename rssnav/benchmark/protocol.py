@@ -157,14 +157,17 @@ def extent_of(
     known: Split = next(name for name in FINGERPRINTS if name == split)
     most = len(FINGERPRINTS[known])
     count = min(whole.generated, most) if generated is None else generated
-    require(1 <= count <= most, "buildings", count, f"1 to {most} in the split {split}")
-    return replace(
+    require(0 <= count <= most, "buildings", count, f"0 to {most} in the split {split}")
+    extent = replace(
         whole,
+        paper=whole.paper and known == "test",
         split=known,
         generated=count,
         plans=tuple(map(str, plans)),
         seeds=seeds or whole.seeds,
     )
+    require(extent.buildings > 0, "buildings", count, "at least 1, or a plan")
+    return extent
 
 
 def flights_of_a_seed(site: Site) -> int:

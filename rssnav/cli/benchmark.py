@@ -42,9 +42,14 @@ def run_benchmark(
         typer.Option(metavar="NAME", help="Name of it in the tables.", show_default="the function"),
     ] = None,
     track: Annotated[
-        str,
-        typer.Option(metavar="TRACK", help="What it is told: RSS, plan, maps, places or world."),
-    ] = "RSS",
+        str | None,
+        typer.Option(
+            metavar="TRACK",
+            help="What it is told: RSS (by default), plan, maps, places or world; without "
+            "--policy, fly those of this track alone.",
+            show_default=False,
+        ),
+    ] = None,
     split: Annotated[
         str,
         typer.Option(
@@ -53,10 +58,11 @@ def run_benchmark(
     ] = "test",
     buildings: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Fly in N generated buildings only, with 2 seeds."),
+        typer.Option(metavar="N", min=0, help="Number of generated buildings.", show_default="50"),
     ] = None,
     seeds: Annotated[
-        int | None, typer.Option(metavar="N", min=1, max=1000, help="Another number of seeds.")
+        int | None,
+        typer.Option(metavar="N", min=1, max=1000, help="Number of seeds.", show_default="10"),
     ] = None,
     plans: Annotated[
         list[Path] | None,
@@ -76,16 +82,17 @@ def run_benchmark(
     Writes results.json, table.md and page.html. Finished flights are saved in the output folder, so
     that the same command resumes after Ctrl-C or a crash.
     """
-    from rssnav.benchmark.entrants import ENTRANTS, entrant_of
+    from rssnav.benchmark.entrants import entrant_of, entrants_of
     from rssnav.benchmark.page import table_rows, write
     from rssnav.benchmark.protocol import FULL, QUICK, extent_of
     from rssnav.benchmark.running import run
     from rssnav.benchmark.scores import scores
     from rssnav.benchmark.submissions import merged, read_scores
 
-    entrants = ENTRANTS if policy is None else (entrant_of(policy, track, name),)
-    whole = QUICK if quick or buildings else FULL
-    extent = extent_of(whole, split, buildings, plans or (), seeds)
+    entrants = entrants_of(track)
+    if policy is not None:
+        entrants = (entrant_of(policy, track or "RSS", name),)
+    extent = extent_of(QUICK if quick else FULL, split, buildings, plans or (), seeds)
     others = [read_scores(path, extent) for path in beside or ()]
     try:
         with stage_progress() as show:

@@ -207,5 +207,8 @@ def test_unknown_policies_tracks_and_splits_are_named():
         entrant_of("json:loads", "everything")
     with pytest.raises(ValueError, match="split"):
         extent_of(FULL, "dev", None, ())
-    with pytest.raises(ValueError, match="1 to 50"):
+    with pytest.raises(ValueError, match="0 to 50"):
         extent_of(FULL, "test", 51, ())
+    with pytest.raises(ValueError, match="at least 1, or a plan"):
+        extent_of(FULL, "train", 0, ())
+    assert extent_of(FULL, "test", 0, ()).buildings == 2
