@@ -135,9 +135,9 @@ def expected_cost(
 ) -> float:
     """Cost of the belief after a step to a cell, expected over whether and what is read there.
 
-    The cost is the entropy (Vergassola et al. 2007, equation 1), or log2(D + 2^(H - 1) + 1/2) with
-    the mean number of steps D that are left and the entropy H in bits (Loisy and Eloy 2022,
-    equation 3.4).
+    The cost is the entropy (Vergassola et al. 2007), or log2(D + 2^(H - 1) - 1/2) with the mean
+    number of steps D that are left and the entropy H in bits (Loisy and Eloy 2022, as in their
+    program OTTO, with steps around walls in place of the Manhattan distance).
 
     Parameters
     ----------
@@ -174,6 +174,6 @@ def expected_cost(
         if total > 0.0:
             entropy = max(math.log2(total) - sum_log / total, 0.0)
             if space_aware:
-                entropy = math.log2(distance / total + 2.0 ** (entropy - 1.0) + 0.5)
+                entropy = math.log2(distance / total + 2.0 ** (entropy - 1.0) - 0.5)
             cost += total * entropy
     return cost

@@ -183,7 +183,7 @@ def twin_of_expected_cost(belief, expected_dbm, found, hops, levels_dbm, sigma_d
         posterior = row / row.sum()
         entropy = -np.sum(posterior[posterior > 0] * np.log2(posterior[posterior > 0]))
         if space_aware:
-            entropy = np.log2(posterior @ hops + 2 ** (entropy - 1) + 0.5)
+            entropy = np.log2(posterior @ hops + 2 ** (entropy - 1) - 0.5)
         cost += row.sum() * entropy
     return cost
 
@@ -202,6 +202,14 @@ def test_expected_costs_equal_their_definition(space_aware):
         space_aware,
     )
     assert expected_cost(*arguments) == pytest.approx(twin_of_expected_cost(*arguments), rel=1e-3)
+
+
+def test_a_known_place_costs_the_logarithm_of_the_steps_to_it():
+    levels_dbm = np.arange(-80.0, -20.0, 0.5)
+    for steps in (1, 2, 8):
+        one = (np.ones(1), np.full(1, -50.0), np.zeros(1, dtype=bool))
+        cost = expected_cost(*one, np.array([steps], dtype=np.int32), levels_dbm, 2.0, True)
+        assert cost == pytest.approx(np.log2(steps), abs=1e-3)
 
 
 def test_a_reading_is_expected_to_teach_something_unless_all_maps_are_equal_there():
