@@ -7,6 +7,7 @@ import panel as pn
 from floorplans.pictures.legend import SOURCE, START
 from rssnav.explorer.cell_paths import PATH_RANGE_DB, TOP
 from rssnav.explorer.map_figure import HATCH, RESIDUALS_DB
+from rssnav.explorer.map_search import BELIEF, COLOURS
 from rssnav.explorer.styles import WIDGETS
 from rssnav.pictures.radio_map import FREE_WALL, NO_PATH
 from rssnav.pictures.style import AGENT_COLOURS, INK
@@ -46,6 +47,7 @@ LEGEND = "".join(
 
 _RSS_KEY = _swatch("background:linear-gradient(90deg,#440154,#3b528b,#21918c,#5ec962,#fde725)")
 _PATHS_KEY = _swatch("height:4px;background:linear-gradient(90deg,#fed976,#fd8d3c,#bd0026)")
+_BELIEF_KEY = _swatch(f"background:linear-gradient(90deg,#ffffff,{BELIEF})")
 _SURVEY_KEY = _swatch("background:linear-gradient(90deg,#053061,#f7f7f7,#67001f)")
 
 _SECTIONS = (
@@ -77,6 +79,15 @@ _SECTIONS = (
         (
             (_line(AGENT_COLOURS["rss"], 4), "Flight of the RSS agent."),
             (_line(AGENT_COLOURS["location"], 4), "Flight of the location agent."),
+        ),
+    ),
+    (
+        "Search",
+        (
+            (_line(COLOURS[0], 4), "Flight of the first searcher."),
+            (_line(COLOURS[1], 4), "Flight of the one that it is compared with."),
+            (_BELIEF_KEY, "Belief of a searcher: how probable the source is in a cell, over the "
+             "pale map. The darkest cell is the most probable one."),
         ),
     ),
     (

@@ -32,6 +32,7 @@ from rssnav.explorer.hover import (
 )
 from rssnav.explorer.map_drawing import FONT, draw_floor, draw_walls, empty_figure
 from rssnav.explorer.map_marks import Marks, are_numbers
+from rssnav.explorer.map_search import SearchOverlay
 from rssnav.explorer.survey_layer import Residuals
 from rssnav.explorer.tracing import TracedMap
 from rssnav.maps import cells_inside
@@ -41,7 +42,7 @@ from rssnav.pictures.style import AGENT_COLOURS, INK
 KEYS = "keys"
 """Name of the data that the page's script fills with the arrow and Enter keys."""
 
-FADED, PLAIN = 0.35, 1.0
+FAINT, FADED, PLAIN = 0.12, 0.35, 1.0
 TRAIL = 120
 """Latest steps of a flight, drawn in full colour."""
 
@@ -74,6 +75,7 @@ class MapFigure:
     Attributes
     ----------
     model : bokeh.plotting.figure
+    search : SearchOverlay
     """
 
     def __init__(
@@ -97,6 +99,7 @@ class MapFigure:
         )
         self._uncovered = ColumnDataSource(dict(_EMPTY_POINTS))
         self._draw_map()
+        self.search = SearchOverlay(self.model)
         draw_walls(self.model, plan, height_m)
         self._survey = ColumnDataSource(dict(EMPTY_READINGS))
         self._draw_survey()
@@ -107,6 +110,7 @@ class MapFigure:
         self._trail = ColumnDataSource(dict(_EMPTY_POINTS))
         self._uav = ColumnDataSource(dict(_EMPTY_POINTS))
         self._draw_overlays()
+        self.search.draw_flights()
         self._marks = Marks(self.model, plan, on_move, on_drag)
         self._on_tap = on_tap
         self.model.on_event(Tap, self._tapped)
@@ -173,7 +177,11 @@ class MapFigure:
             "ys": [line[:, 1] for line in vertices[::-1]],
             "colour": colours[::-1],
         }
-        self._picture.glyph.update(global_alpha=FADED if vertices else PLAIN)
+        self.fade(FADED if vertices else PLAIN)
+
+    def fade(self, alpha: float) -> None:
+        """Show the map in its own colours (`PLAIN`), or paler ones (`FADED`, `FAINT`)."""
+        self._picture.glyph.update(global_alpha=alpha)
 
     def show_flight(self, position: NDArray[np.float64], step: int, agent: str) -> None:
         """Draw a flight in its agent's colour: all of it lightly, trail and UAV over it.

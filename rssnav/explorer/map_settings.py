@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import floorplans
 from floorplans import FloorPlan, PlanError
 from raytrace import Grid, TraceConfig, Transmitter
 from rssnav.explorer.antenna_choice import AntennaChoice
 from rssnav.explorer.transmitters import without_file
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
-from rssnav.presets import PRESETS, PresetName, with_limits
+from rssnav.presets import PRESETS, PresetName, default_preset, with_limits
 from rssnav.transmitters import FREQUENCY_HZ, POWER_DBM, SOURCE, Sending
 
 ANTENNA_OF_PRESET: dict[PresetName, str] = {"paper": "dipole", "building": "unpolarised"}
@@ -101,3 +102,10 @@ class MapSettings:
     def transmitters(self, plan: FloorPlan) -> dict[str, Transmitter]:
         """All transmitters of a plan by name."""
         return {t.id: replace(self, server=t.id).transmitter(plan) for t in plan.transmitters}
+
+
+def preset_of(plan: FloorPlan) -> PresetName:
+    """Preset of a plan: built-in ones have opaque walls, as the reproduced paper has."""
+    is_builtin = plan.name in floorplans.builtin_names()
+    is_own = not is_builtin or floorplans.load(plan.name).walls != plan.walls
+    return default_preset("" if is_own else plan.name)

@@ -10,9 +10,10 @@ from rssnav.explorer.cell_paths import strongest
 from rssnav.explorer.downloads import Downloads
 from rssnav.explorer.flight_player import FlightPlayer
 from rssnav.explorer.help_panel import LEGEND, HelpPanel
-from rssnav.explorer.map_figure import MapFigure
+from rssnav.explorer.map_figure import FAINT, PLAIN, MapFigure
 from rssnav.explorer.map_panel import MapPanel
 from rssnav.explorer.plan_panel import PlanPanel
+from rssnav.explorer.search_panel import SearchPanel, Shown
 from rssnav.explorer.session import Session
 from rssnav.explorer.space_view import page_3d
 from rssnav.explorer.styles import (
@@ -33,7 +34,7 @@ from rssnav.explorer.training_panel import TrainingPanel
 from rssnav.kernel_cache import tracer_cache
 
 POLL_MS = 100
-PATHS_TAB, TRAINING_TAB = 1, 2
+PATHS_TAB, TRAINING_TAB, SEARCH_TAB = 1, 2, 3
 FLAT_VIEW, SPACE_VIEW = "2D", "3D"
 
 
@@ -94,6 +95,7 @@ class Page:
         self._plan_panel, self._map_panel = PlanPanel(session), MapPanel(session)
         self._cell_panel = CellPanel(session)
         self._training_panel = TrainingPanel(session)
+        self._search_panel = SearchPanel(session, self._show_searches)
         self._downloads = Downloads(session)
         self._player = FlightPlayer(self._show_flight)
         self._views = pn.widgets.RadioButtonGroup(
@@ -112,6 +114,7 @@ class Page:
             ("Setup", setup),
             ("Paths", self._cell_panel.view),
             ("Training", self._training_panel.view),
+            ("Search", self._search_panel.view),
             ("Files", self._downloads.view),
             ("Help", HelpPanel().view),
             stylesheets=TABS,
@@ -129,7 +132,9 @@ class Page:
                 f'<p class="legend">{LEGEND}</p>', stylesheets=WIDGETS, sizing_mode="stretch_width"
             ),
             status=self._status,
-            player=self._player.view,
+            player=pn.Column(
+                self._player.view, self._search_panel.player, sizing_mode="stretch_width"
+            ),
             tools=self._tabs,
         )
 
@@ -150,6 +155,7 @@ class Page:
         self._show_survey()
         self._show_paths()
         self._show_training()
+        self._show_search()
         self._show_space()
         self._status.object = self._status_words()
 
@@ -199,6 +205,7 @@ class Page:
             self._downloads.show()
             if complete and self._changes.of("goal", latest):
                 self._training_panel.suggest_goal()
+                self._search_panel.suggest_goal()
 
     def _show_survey(self) -> None:
         session = self._session
@@ -209,7 +216,7 @@ class Page:
     def _show_paths(self) -> None:
         session = self._session
         found, finder = session.paths.latest, session.paths
-        hidden = self._tabs.active == TRAINING_TAB
+        hidden = self._tabs.active in (TRAINING_TAB, SEARCH_TAB)
         if not self._changes.of("paths", session.cell, found, finder.busy, finder.problem, hidden):
             return
         centre = None
@@ -239,11 +246,25 @@ class Page:
         if training is not None:
             self._figure.show_flight(flight.position, step, training.settings.agent)
 
+    def _show_search(self) -> None:
+        search, complete = self._session.search, self._session.complete_map is not None
+        progress = (0, False) if search is None else (search.steps, search.running)
+        if self._changes.of("search", search, complete, *progress):
+            self._search_panel.show()
+            self._switch_tab(None)
+
+    def _show_searches(self, shown: Shown) -> None:
+        positions, belief = shown
+        self._figure.search.show(positions, belief, self._session.grid)
+        self._figure.fade(PLAIN if belief is None else FAINT)
+
     def _switch_tab(self, _event: Any) -> None:
-        """Show flights while the training tab is open, and paths otherwise."""
+        """Show flights while the tab of training or search is open, and paths otherwise."""
         self._player.show(self._tabs.active == TRAINING_TAB)
         if not self._player.view.visible:
             self._figure.hide_flight()
+        if not self._search_panel.show_player(self._tabs.active == SEARCH_TAB):
+            self._figure.search.hide()
 
     def _switch_view(self, event: Any) -> None:
         """Show the map, or the building in 3D."""

@@ -12,8 +12,9 @@ from rssnav.explorer.background import FileMaker, NewestOnly, Ticket
 from rssnav.explorer.cell_paths import Position
 from rssnav.explorer.fair_turns import FairTurns, TabTurns
 from rssnav.explorer.limits import Limits
-from rssnav.explorer.map_settings import MapSettings
+from rssnav.explorer.map_settings import MapSettings, preset_of
 from rssnav.explorer.places import Point, cell_at, nearest_centre, with_source_and_start
+from rssnav.explorer.searching import LiveSearch, SearchSettings
 from rssnav.explorer.session_file import SavedSession
 from rssnav.explorer.survey_layer import (
     CSV,
@@ -31,7 +32,7 @@ from rssnav.explorer.tracing import (
 )
 from rssnav.explorer.training import LiveTraining, TrainingSettings
 from rssnav.explorer.uploads import Upload, read_upload
-from rssnav.presets import PresetName, default_preset
+from rssnav.presets import PresetName
 from rssnav.transmitters import SOURCE
 
 PLACE_DIGITS = 2
@@ -42,7 +43,7 @@ class Session:
     """State of one tab, independent of the browser.
 
     Methods that change it are called from one thread only. Long work runs on other threads; its
-    results appear in `maps`, `paths` and `training`, or through `take_upload`.
+    results appear in `maps`, `paths`, `training` and `search`, or through `take_upload`.
 
     Parameters
     ----------
@@ -64,6 +65,7 @@ class Session:
     files : FileMaker
         Makes what is downloaded.
     training : LiveTraining or None
+    search : LiveSearch or None
     cell : (int, int) or None
         Indices (i_y, i_x) of the selected cell.
     import_report : tuple of str
@@ -88,6 +90,7 @@ class Session:
         self.paths = PathFinder(self.limits, scenes, self._turns)
         self.survey = SurveyTracer(self.limits, scenes, self._turns)
         self.training: LiveTraining | None = None
+        self.search: LiveSearch | None = None
         self.cell: tuple[int, int] | None = None
         self.problem = ""
         self._reader = NewestOnly("upload", self._turns)
@@ -100,6 +103,7 @@ class Session:
     def close(self) -> None:
         """Stop all work of this tab."""
         self.stop_training()
+        self.stop_search()
         for part in (self.maps, self.paths, self.survey, self._reader, self.files):
             part.close()
 
@@ -121,7 +125,7 @@ class Session:
         height_m = self.settings.height_m
         if not height_m < plan.height_m:
             height_m = round(plan.height_m / 2, PLACE_DIGITS)
-        preset = _preset_of(plan)
+        preset = preset_of(plan)
         of_kind = self.settings if preset == self._preset else self.settings.with_preset(preset)
         self._open(plan, replace(of_kind, height_m=height_m, server=SOURCE))
 
@@ -129,12 +133,12 @@ class Session:
         """Replace all that is open, and trace the map."""
         settings.check_height(plan)
         self.limits.check_cells(plan, settings.cell_size_m)
-        self._drop_training()
+        self._drop_flights()
         self.maps.forget()
         self.paths.forget()
         self.survey.forget()
         self.cell, self.problem, self.import_report = None, "", ()
-        self.plan, self.settings, self._preset = plan, settings, _preset_of(plan)
+        self.plan, self.settings, self._preset = plan, settings, preset_of(plan)
         self._snap_start()
         self.maps.request(self.plan, self.settings)
 
@@ -250,7 +254,7 @@ class Session:
         before = self.plan
         self._try(lambda: self._replace_plan(replace(before, source=source)))
         if self.plan.source != before.source:
-            self._drop_training()
+            self._drop_flights()
             self.settings = replace(self.settings, server=SOURCE)
         self.maps.request(self.plan, self.settings)
         self._find_paths()
@@ -262,7 +266,7 @@ class Session:
             lambda: self._replace_plan(replace(before, start=nearest_centre(self.grid, x, y)))
         )
         if self.plan is not before:
-            self._drop_training()
+            self._drop_flights()
 
     def change(self, settings: MapSettings, source: Position, start: Point) -> None:
         """Move source and start [m] and change the settings, until one of these is rejected."""
@@ -284,7 +288,7 @@ class Session:
     def _apply(self, settings: MapSettings) -> None:
         self.limits.check_cells(self.plan, settings.cell_size_m)
         settings.check_height(self.plan)
-        self._drop_training()
+        self._drop_flights()
         self.paths.forget()
         self.cell, self.settings = None, settings
         self._snap_start()
@@ -345,25 +349,43 @@ class Session:
         labelled = latest.radio_map.with_plan(floorplans.dumps(self.plan), self.plan.sha256)
         return replace(latest, plan=self.plan, radio_map=labelled)
 
+    def _map_to_fly_in(self, what: str) -> TracedMap | None:
+        """Return the complete map, or say that there is none yet."""
+        traced, self.problem = self.complete_map, ""
+        if traced is None:
+            self.problem = f"the map is not complete yet; start the {what} when it is"
+        return traced
+
     def train(self, settings: TrainingSettings) -> None:
         """Start a training in the complete map, replacing the previous one."""
-        traced = self.complete_map
-        if traced is None:
-            self.problem = "the map is not complete yet; start the training when it is"
-            return
-        self.stop_training()
-        self.problem = ""
-        self.training = LiveTraining(traced, settings, self._turns)
-        self.training.start()
+        traced = self._map_to_fly_in("training")
+        if traced is not None:
+            self.stop_training()
+            self.training = LiveTraining(traced, settings, self._turns)
+            self.training.start()
 
     def stop_training(self) -> None:
         """Stop the training; its results so far stay."""
         if self.training is not None:
             self.training.stop()
 
-    def _drop_training(self) -> None:
+    def begin_search(self, settings: SearchSettings) -> None:
+        """Start two searchers in the complete map, replacing the previous ones."""
+        traced = self._map_to_fly_in("search")
+        if traced is not None:
+            self.stop_search()
+            self.search = LiveSearch(traced, settings, self._turns)
+            self.search.start()
+
+    def stop_search(self) -> None:
+        """Stop the search; what was flown stays."""
+        if self.search is not None:
+            self.search.stop()
+
+    def _drop_flights(self) -> None:
         self.stop_training()
-        self.training, self._resuming = None, None
+        self.stop_search()
+        self.training, self.search, self._resuming = None, None, None
 
     def _snap_start(self) -> None:
         """Move the start to a cell centre, if the plan allows it."""
@@ -381,10 +403,3 @@ class Session:
             self.problem = ""
         except PlanError as error:
             self.problem = str(error)
-
-
-def _preset_of(plan: FloorPlan) -> PresetName:
-    """Preset of a plan: built-in ones have opaque walls, as the reproduced paper has."""
-    is_builtin = plan.name in floorplans.builtin_names()
-    is_own = not is_builtin or floorplans.load(plan.name).walls != plan.walls
-    return default_preset("" if is_own else plan.name)

@@ -3,6 +3,7 @@
 from floorplans.values import COORDINATE
 from rssnav.explorer.antenna_choice import AZIMUTH, ELEVATION
 from rssnav.explorer.ranges import Range
+from rssnav.explorer.searching import MAX_STEPS
 from rssnav.explorer.training import MAX_EPISODES
 from rssnav.learning_parameters import QLearning
 
@@ -41,6 +42,14 @@ TRAINING = {
     "goal_distance_m": Range("Goal: within [m]", 0.1, 1000.0, 0.5),
     "tolerance_db": Range("Tolerance of states [dB]", 0.0, 1000.0, 0.5),
     "seed": Range("Seed", 0, 2**53 - 1, whole=True),
+}
+SEARCH = {
+    "speed": TRAINING["speed"],
+    "max_steps": Range("Steps at most", 1, MAX_STEPS, 100, whole=True),
+    "goal_rss_dbm": TRAINING["goal_rss_dbm"],
+    "sigma_db": Range("Fluctuation \u03c3 [dB]", 0.0, 20.0, 0.5),
+    "confirmations": Range("Readings to confirm", 1, 100, whole=True),
+    "seed": TRAINING["seed"],
 }
 LEARNING = {
     "gamma": Range("Discount \u03b3", 0.0, 1.0, 0.01),

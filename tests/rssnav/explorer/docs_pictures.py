@@ -27,12 +27,20 @@ def train(tab: Tab) -> None:
     tab.page.get_by_text(re.compile("^Learned")).wait_for()
 
 
+def search(tab: Tab) -> None:
+    tab.choose("Search")
+    tab.page.get_by_role("button", name="Fly", exact=True).click()
+    tab.page.get_by_text(re.compile("^found")).nth(1).wait_for()
+
+
 def main() -> None:
     with serving() as address, chromium() as browser:
         desktop = Tab(browser, address, DESKTOP)
         desktop.page.mouse.click(*desktop.place(6.5, 4.5))
         desktop.page.get_by_text("(6.5, 4.5, 2) m").wait_for()
         take(desktop, "explorer")
+        search(desktop)
+        take(desktop, "explorer_search")
         desktop.page.get_by_role("button", name="3D", exact=True).click()
         train(desktop)
         take(desktop, "explorer_flight")

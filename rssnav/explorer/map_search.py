@@ -1,0 +1,97 @@
+"""Two searchers' flights over the map, and what one of them believes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from bokeh.models import ColumnDataSource, Image, LinearColorMapper
+from bokeh.plotting import figure
+from numpy.typing import NDArray
+
+from raytrace import Grid
+from rssnav.pictures.style import AGENT_COLOURS
+
+COLOURS = (AGENT_COLOURS["rss"], AGENT_COLOURS["location"])
+BELIEF = "#d6006c"
+OPACITY, SHADES = 0.8, 32
+LEAST_STRENGTH = 6.0
+"""The darkest shade is at least this many times the probability of a cell in an even belief."""
+
+_NO_POINTS: dict[str, list[float]] = {"x": [], "y": []}
+_NO_IMAGE: dict[str, list[Any]] = {name: [] for name in ("image", "x", "y", "dw", "dh")}
+
+
+class SearchOverlay:
+    """Belief and flights, drawn on a figure in two layers.
+
+    Parameters
+    ----------
+    model : bokeh.plotting.figure
+    """
+
+    def __init__(self, model: figure) -> None:
+        self._model = model
+        shades = [f"{BELIEF}{round(255 * OPACITY * k / (SHADES - 1)):02x}" for k in range(SHADES)]
+        self._mapper = LinearColorMapper(palette=shades, low=0.0, high=1.0)
+        self._belief = ColumnDataSource(dict(_NO_IMAGE))
+        glyph = Image(image="image", x="x", y="y", dw="dw", dh="dh", color_mapper=self._mapper)
+        model.add_glyph(self._belief, glyph)
+        self._trails: list[tuple[ColumnDataSource, ColumnDataSource]] = []
+
+    def draw_flights(self) -> None:
+        """Draw what will show the flights, above all that the figure has so far."""
+        for colour, width in zip(COLOURS, (4.0, 2.4), strict=True):
+            trail, uav = (ColumnDataSource(dict(_NO_POINTS)) for _ in range(2))
+            self._model.line("x", "y", source=trail, line_color="white", line_width=width + 2.2)
+            self._model.line(
+                "x", "y", source=trail, line_color=colour, line_width=width, line_join="round"
+            )
+            self._model.scatter(
+                "x", "y", source=uav, size=15, marker="diamond", fill_color=colour,
+                line_color="white", line_width=2,
+            )  # fmt: skip
+            self._trails.append((trail, uav))
+
+    def show(
+        self,
+        positions: tuple[NDArray[np.float64], ...],
+        belief: NDArray[np.float32] | None,
+        grid: Grid,
+    ) -> None:
+        """Draw flights up to where they are, and a belief.
+
+        Parameters
+        ----------
+        positions : two of (n + 1, 2) float64
+            Cell centres along each flight [m].
+        belief : (n_y, n_x) float32 or None
+            Probability of each cell of the grid.
+        grid : Grid
+        """
+        for (trail, uav), position in zip(self._trails, positions, strict=True):
+            trail.data = _columns(position)
+            uav.data = _columns(position[-1:])
+        if belief is None:
+            self._belief.data = dict(_NO_IMAGE)
+            return
+        half = 0.5 * grid.cell_size_m
+        self._mapper.high = max(float(belief.max()), LEAST_STRENGTH / belief.size)
+        self._belief.data = {
+            "image": [belief],
+            "x": [grid.x[0] - half],
+            "y": [grid.y[0] - half],
+            "dw": [grid.x[-1] - grid.x[0] + 2.0 * half],
+            "dh": [grid.y[-1] - grid.y[0] + 2.0 * half],
+        }
+
+    def hide(self) -> None:
+        """Remove all of it."""
+        for sources in self._trails:
+            for source in sources:
+                source.data = dict(_NO_POINTS)
+        self._belief.data = dict(_NO_IMAGE)
+
+
+def _columns(position: NDArray[np.float64]) -> dict[str, Any]:
+    return {"x": position[:, 0], "y": position[:, 1]}

@@ -1,0 +1,175 @@
+"""Two searchers in the explorer: their flights, beliefs and limits."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+import floorplans
+from raytrace import TraceConfig
+from rssnav.explorer.map_drawing import empty_figure
+from rssnav.explorer.map_search import SearchOverlay
+from rssnav.explorer.map_settings import MapSettings
+from rssnav.explorer.search_panel import SearchPanel
+from rssnav.explorer.searching import (
+    BELIEVERS,
+    MAX_STEPS,
+    SEARCHERS,
+    LiveSearch,
+    SearchSettings,
+    power_at_1m_dbm,
+)
+from rssnav.explorer.session import Session
+from rssnav.explorer.tracing import MapCache, TracedMap
+from rssnav.maps import make_map
+
+pytestmark = pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")  # of Panel
+
+GOAL_DBM = -30.0
+FLAT = floorplans.load("flat")
+
+
+@pytest.fixture(scope="module")
+def traced() -> TracedMap:
+    radio_map = make_map(FLAT, config=TraceConfig(1, 1))
+    return TracedMap(FLAT, MapSettings(), radio_map, True)
+
+
+def flown(traced: TracedMap, settings: SearchSettings) -> LiveSearch:
+    search = LiveSearch(traced, settings)
+    search.start()
+    search.join(60.0)
+    assert not search.running
+    return search
+
+
+@pytest.mark.parametrize("name", SEARCHERS)
+def test_a_flight_goes_from_cell_to_cell_until_the_goal(traced: TracedMap, name: str) -> None:
+    search = flown(traced, SearchSettings((name, name), GOAL_DBM))
+    assert search.problem == ""
+    for flight in search.flights:
+        position = np.array(flight.position)
+        assert tuple(position[0]) == FLAT.start
+        assert np.abs(np.diff(position, axis=0)).max() <= traced.radio_map.grid.cell_size_m
+        grid = traced.radio_map.grid
+        x, y = position[-1]
+        i_y, i_x = np.searchsorted(grid.y, y), np.searchsorted(grid.x, x)
+        assert traced.radio_map.rss_dbm[i_y, i_x] > GOAL_DBM
+        assert flight.end == "found"
+        assert flight.steps >= search.shortest_steps
+        assert bool(flight.beliefs) == (name in BELIEVERS)
+
+
+def test_the_same_seed_gives_the_same_flights(traced: TracedMap) -> None:
+    settings = SearchSettings(
+        ("Random walk", "Bayesian, plan unknown"), GOAL_DBM, sigma_db=2.0, confirmations=3, seed=5
+    )
+    one, other = (flown(traced, settings) for _ in range(2))
+    for a, b in zip(one.flights, other.flights, strict=True):
+        np.testing.assert_array_equal(a.position, b.position)
+
+
+def test_beliefs_are_probabilities_of_where_the_source_may_be(traced: TracedMap) -> None:
+    search = flown(traced, SearchSettings(BELIEVERS, GOAL_DBM))
+    for flight in search.flights:
+        assert len(flight.beliefs) == flight.steps
+        for step in range(flight.steps):
+            belief = flight.belief(step)
+            assert belief.shape == traced.radio_map.rss_dbm.shape
+            assert belief.min() >= 0.0
+            assert belief.sum() == pytest.approx(1.0, abs=1e-4)
+
+
+def test_a_flight_ends_after_its_steps(traced: TracedMap) -> None:
+    search = flown(traced, SearchSettings(("Random walk", "Frontier"), GOAL_DBM, max_steps=3))
+    assert [flight.end for flight in search.flights] == ["time is over"] * 2
+    assert search.steps == 3
+
+
+def test_a_search_that_is_stopped_ends(traced: TracedMap) -> None:
+    search = LiveSearch(traced, SearchSettings(("Random walk", "Random walk"), GOAL_DBM))
+    search.stop()
+    search.start()
+    search.join(60.0)
+    assert not search.running
+    assert search.steps == 0
+
+
+def test_a_goal_that_no_cell_reaches_is_told(traced: TracedMap) -> None:
+    search = flown(traced, SearchSettings(("Frontier", "Frontier"), goal_rss_dbm=90.0))
+    assert "no cell has an RSS above 90 dBm" in search.problem
+
+
+def test_gaussian_processes_of_too_many_cells_are_refused(
+    traced: TracedMap, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("rssnav.explorer.searching.MOST_GAUSSIAN_CELLS", 50)
+    search = flown(traced, SearchSettings(("Gaussian process", "Frontier"), GOAL_DBM))
+    assert "the map has 108 cells" in search.problem
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"searchers": ("Frontier", "Oracle")}, {"max_steps": 0}, {"max_steps": MAX_STEPS + 1}],
+)
+def test_settings_are_checked(changes: dict) -> None:
+    with pytest.raises(ValueError, match="must be"):
+        SearchSettings(**{"searchers": ("Frontier", "Frontier"), **changes})
+
+
+def test_the_level_at_a_metre_is_that_of_free_space(traced: TracedMap) -> None:
+    """25 dBm less 40.05 dB at 2.4 GHz."""
+    assert power_at_1m_dbm(traced.radio_map) == pytest.approx(-15.05, abs=0.01)
+
+
+def test_what_is_hidden_leaves_nothing_on_the_map(traced: TracedMap) -> None:
+    overlay = SearchOverlay(empty_figure())
+    overlay.draw_flights()
+    grid = traced.radio_map.grid
+    line = np.array([[0.5, 0.5], [1.5, 0.5]])
+    overlay.show((line, line), np.full((9, 12), 1 / 108, dtype=np.float32), grid)
+    sources = [r.data_source for r in overlay._model.renderers]
+    assert all(any(len(column) for column in source.data.values()) for source in sources)
+    overlay.hide()
+    assert not any(len(column) for source in sources for column in source.data.values())
+
+
+@pytest.fixture
+def session() -> Iterator[Session]:
+    opened = Session(FLAT, cache=MapCache())
+    opened.change_settings(MapSettings(cell_size_m=1.5, max_reflections=1))
+    while opened.complete_map is None:
+        pass
+    yield opened
+    opened.close()
+
+
+def test_the_panel_flies_and_shows_steps(session: Session) -> None:
+    shown = []
+    panel = SearchPanel(session, shown.append)
+    panel.suggest_goal()
+    panel._fly.clicks += 1
+    session.search.join(60.0)
+    panel.show_player(True)
+    panel.show()
+    positions, belief = shown[-1]
+    assert len(positions[0]) == session.search.flights[0].steps + 1
+    assert belief is not None
+    panel._player.value = 0
+    assert [len(position) for position in shown[-1][0]] == [1, 1]
+
+
+def test_a_value_out_of_range_is_refused(session: Session) -> None:
+    panel = SearchPanel(session, lambda _shown: None)
+    panel._inputs["sigma_db"].param.update(end=None, value=1e9)
+    panel._fly.clicks += 1
+    assert session.search is None
+    assert "must be 0 to 20" in panel._facts.object
+
+
+def test_moving_the_source_ends_the_search(session: Session) -> None:
+    session.begin_search(SearchSettings(("Frontier", "Frontier"), GOAL_DBM))
+    search = session.search
+    session.move_source(2.0, 2.0)
+    search.join(60.0)
+    assert session.search is None
