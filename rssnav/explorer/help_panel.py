@@ -86,8 +86,8 @@ _SECTIONS = (
         (
             (_line(COLOURS[0], 4), "Flight of the first searcher."),
             (_line(COLOURS[1], 4), "Flight of the one that it is compared with."),
-            (_BELIEF_KEY, "Belief of a searcher: how probable the source is in a cell, over the "
-             "pale map. The darkest cell is the most probable one."),
+            (_BELIEF_KEY, "Belief of a searcher, in place of the RSS: how probable the source is "
+             "in a cell. The darkest cell is the most probable one."),
         ),
     ),
     (

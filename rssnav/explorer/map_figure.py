@@ -42,7 +42,7 @@ from rssnav.pictures.style import AGENT_COLOURS, INK
 KEYS = "keys"
 """Name of the data that the page's script fills with the arrow and Enter keys."""
 
-FAINT, FADED, PLAIN = 0.12, 0.35, 1.0
+HIDDEN, FADED, PLAIN = 0.0, 0.35, 1.0
 TRAIL = 120
 """Latest steps of a flight, drawn in full colour."""
 
@@ -180,7 +180,7 @@ class MapFigure:
         self.fade(FADED if vertices else PLAIN)
 
     def fade(self, alpha: float) -> None:
-        """Show the map in its own colours (`PLAIN`), or paler ones (`FADED`, `FAINT`)."""
+        """Show the map in its own colours (`PLAIN`), paler ones (`FADED`), or not (`HIDDEN`)."""
         self._picture.glyph.update(global_alpha=alpha)
 
     def show_flight(self, position: NDArray[np.float64], step: int, agent: str) -> None:

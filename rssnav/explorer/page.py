@@ -10,7 +10,7 @@ from rssnav.explorer.cell_paths import strongest
 from rssnav.explorer.downloads import Downloads
 from rssnav.explorer.flight_player import FlightPlayer
 from rssnav.explorer.help_panel import LEGEND, HelpPanel
-from rssnav.explorer.map_figure import FAINT, PLAIN, MapFigure
+from rssnav.explorer.map_figure import HIDDEN, PLAIN, MapFigure
 from rssnav.explorer.map_panel import MapPanel
 from rssnav.explorer.plan_panel import PlanPanel
 from rssnav.explorer.search_panel import SearchPanel, Shown
@@ -256,7 +256,7 @@ class Page:
     def _show_searches(self, shown: Shown) -> None:
         positions, belief = shown
         self._figure.search.show(positions, belief, self._session.grid)
-        self._figure.fade(PLAIN if belief is None else FAINT)
+        self._figure.fade(PLAIN if belief is None else HIDDEN)
 
     def _switch_tab(self, _event: Any) -> None:
         """Show flights while the tab of training or search is open, and paths otherwise."""

@@ -85,12 +85,25 @@ def test_train_watch_stop_and_play(tab) -> None:
     tab.page.get_by_text(re.compile(r"^Episode \d+ of 1000: step")).wait_for()
     expect(train).to_be_enabled()
     before = tab.columns("Line")
-    tab.page.locator("button.first").click()
+    tab.page.locator("button.first:visible").click()
     tab.page.get_by_text(re.compile(r"^Episode 1 of 1000: step 0 of")).wait_for()
-    tab.page.locator("button.play").click()
+    tab.page.locator("button.play:visible").click()
     tab.page.get_by_text(re.compile(r"^Episode 2 of 1000")).wait_for()
     assert tab.columns("Line") != before
-    tab.page.locator("button.pause").click()
+    tab.page.locator("button.pause:visible").click()
+
+
+def test_two_searchers_fly_side_by_side(tab) -> None:
+    tab.choose("Search")
+    tab.page.get_by_label("Compared with").select_option("Frontier")
+    tab.page.get_by_role("button", name="Fly").click()
+    ended = tab.page.get_by_text(re.compile(r"^found, \d+ steps$"))
+    ended.nth(1).wait_for()
+    tab.page.get_by_text(re.compile(r"Frontier: step (\d+) of \1$")).wait_for()
+    tab.page.locator("button.first:visible").click()
+    tab.page.get_by_text(re.compile(r"Frontier: step 0 of")).wait_for()
+    tab.choose("Help")
+    expect(tab.page.locator("button.first:visible")).to_have_count(0)
 
 
 def test_download_map_figures_and_plan(tab, tmp_path) -> None:
