@@ -1,5 +1,6 @@
 """The reconstructed floor plans keep what the paper fixes, and its flights exist in them."""
 
+from dataclasses import replace
 from functools import cache
 from itertools import product
 
@@ -13,7 +14,10 @@ import floorplans
 from floorplans import FloorPlan
 from raytrace import Grid, RadioMap, TraceConfig, Transmitter
 from rssnav import GridWorld
-from rssnav.experiments.studies.plan_search.constraints import allows_printed_flights
+from rssnav.experiments.studies.plan_search.constraints import (
+    allows_printed_flights,
+    arrivals,
+)
 from rssnav.experiments.studies.plan_search.families import draw
 
 FLYING_HEIGHT_M = 2.0
@@ -131,6 +135,15 @@ def drawing(plan: FloorPlan) -> tuple[dict[str, BaseGeometry], set[tuple[object,
 def union_of(lines: list[LineString]) -> BaseGeometry:
     """One geometry of lines, without the points at which they only continue."""
     return shapely.simplify(shapely.line_merge(shapely.union_all(lines)), 0.0)
+
+
+def test_only_at_1_and_2_m_s_the_way_through_the_compartment_is_faster() -> None:
+    """What docs/paper_statements.md says of Scenario 2."""
+    plan = floorplans.load("scenario2")
+    walls = [replace(w, openings=()) if min(w.start[1], w.end[1]) > 30 else w for w in plan.walls]
+    closed = replace(plan, walls=tuple(walls))
+    least = [[arrivals(p, v, 110).least_steps for v in (1, 2, 4)] for p in (plan, closed)]
+    assert least == [[100, 52, 28], [106, 54, 28]]
 
 
 def test_scenario_1_is_the_simpler_one() -> None:
