@@ -8,8 +8,7 @@ outline lies outside the building, whatever its area.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -67,34 +66,53 @@ def solid_regions(walls: Sequence[Wall]) -> tuple[SolidRegion, ...]:
     small = [face for face in faces_of(walls) if face.area <= MAX_AREA_M2 + _ROUNDING_M2]
     if not small:
         return ()
-    tree = shapely.STRtree(centre_lines(walls))
-    return tuple(region for face in small if (region := _solid(face, walls, tree)) is not None)
+    edges = _edges(small, walls)
+    return tuple(
+        region
+        for face, around in zip(small, edges, strict=True)
+        if (region := _solid(face, around)) is not None
+    )
 
 
-def _solid(face: Polygon, walls: Sequence[Wall], tree: shapely.STRtree) -> SolidRegion | None:
-    """Return the region of a face; None if an opening leads into it."""
-    around: list[Wall] = []
-    for wall, low, high in _edges(face, walls, tree):
+_Edge = tuple[Wall, float, float]
+"""A section of a wall, from s to s along it [m]."""
+
+
+def _solid(face: Polygon, edges: Sequence[_Edge]) -> SolidRegion | None:
+    """Return the region of a face with its edges; None if an opening leads into it."""
+    for wall, low, high in edges:
         for opening in wall.openings:
             if min(high, opening.end_m) - max(low, opening.offset_m) > _SHARED_M:
                 return None
-        around.append(wall)
-    if not around:
+    if not edges:
         return None
-    lowest = min(around, key=lambda wall: wall.height_m)
+    lowest = min((wall for wall, _, _ in edges), key=lambda wall: wall.height_m)
     return SolidRegion(face, lowest.height_m, lowest.material)
 
 
-def _edges(
-    face: Polygon, walls: Sequence[Wall], tree: shapely.STRtree
-) -> Iterator[tuple[Wall, float, float]]:
-    """Yield each section of a wall, from s to s [m], that is part of a face's edge."""
-    for ring in (face.exterior, *face.interiors):
-        for ends in pairwise(np.asarray(ring.coords)):
-            middle = shapely.points(np.mean(ends, axis=0))
-            for k in tree.query(middle, predicate="dwithin", distance=_NEAR_M):
-                wall = walls[int(k)]
-                along = np.subtract(wall.end, wall.start) / wall.length_m
-                low, high = sorted(((np.array(ends) - wall.start) @ along).tolist())
-                if high - low > _SHARED_M:
-                    yield wall, low, high
+def _edges(faces: Sequence[Polygon], walls: Sequence[Wall]) -> list[list[_Edge]]:
+    """Sections of walls that are part of the edge of each face."""
+    chains = [
+        (k, shapely.get_coordinates(ring))
+        for k, face in enumerate(faces)
+        for ring in (face.exterior, *face.interiors)
+    ]
+    face_of = np.concatenate([np.full(len(chain) - 1, k) for k, chain in chains])
+    ends = np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for _, chain in chains])
+    middles = np.array(shapely.points(ends.mean(axis=1)), dtype=np.object_)
+    side, near = shapely.STRtree(centre_lines(walls)).query(
+        middles, predicate="dwithin", distance=_NEAR_M
+    )
+    start, stop = (
+        np.array([(walls[k].start, walls[k].end) for k in near]).reshape(-1, 2, 2).swapaxes(0, 1)
+    )
+    step = stop - start
+    along = step / np.hypot(step[:, 0], step[:, 1])[:, None]
+    s = np.sort(((ends[side] - start[:, None]) * along[:, None]).sum(axis=2), axis=1)
+    found: list[list[_Edge]] = [[] for _ in faces]
+    for face, wall, (low, high) in zip(
+        face_of[side].tolist(), near.tolist(), s.tolist(), strict=True
+    ):
+        if high - low > _SHARED_M:
+            found[face].append((walls[wall], low, high))
+    return found

@@ -14,6 +14,8 @@ from floorplans.walls import Interval, Point, complement
 
 MIN_THICKNESS_M = 0.02
 _MAX_SINE = np.sin(np.radians(6.0))
+_N_DIRECTIONS = 29
+"""Bins of directions, each wider than the angle up to which lines are nearly parallel."""
 _MIN_OVERLAP_M = 0.05
 _MIN_SINGLE_M = 0.3
 """Unpaired lines shorter than this are jambs and caps, not walls [m]."""
@@ -133,13 +135,37 @@ def _pairs(
 ) -> list[tuple[float, int, int]]:
     """Pairs of nearly parallel faces up to a distance, each after its distance, the least first."""
     lines = np.array(shapely.linestrings(segments), dtype=np.object_)
-    pairs = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=distance_m)
-    near = pairs[:, pairs[0] < pairs[1]].T
     along = np.array([face.along for face in faces]).reshape(-1, 2)
+    near = _near_in_direction(lines, along, distance_m)
     a, b = along[near[:, 0]], along[near[:, 1]]
     near = near[np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) <= _MAX_SINE]
     apart = ((_apart(faces[i], faces[j]), i, j) for i, j in near.tolist())
     return sorted(pair for pair in apart if pair[0] <= distance_m)
+
+
+def _near_in_direction(
+    lines: Areas, along: NDArray[np.float64], distance_m: float
+) -> NDArray[np.int64]:
+    """Pairs (i, j), i < j, of lines up to a distance, all of them that are nearly parallel, (n, 2).
+
+    Lines are looked up among those of their own bin of directions and of the next one: in a tangle
+    most neighbours have other directions.
+    """
+    angle = np.arctan2(along[:, 1], along[:, 0]) % np.pi
+    bins = np.minimum((angle / np.pi * _N_DIRECTIONS).astype(np.int64), _N_DIRECTIONS - 1)
+    members = [np.flatnonzero(bins == k) for k in range(_N_DIRECTIONS)]
+    found = [np.empty((0, 2), dtype=np.int64)]
+    for k, own in enumerate(members):
+        if not len(own):
+            continue
+        others = np.concatenate([own, members[(k + 1) % _N_DIRECTIONS]])
+        i, j = shapely.STRtree(lines[others]).query(
+            lines[own], predicate="dwithin", distance=distance_m
+        )
+        pairs = np.stack([own[i], others[j]], axis=1)
+        is_once = (j >= len(own)) | (pairs[:, 0] < pairs[:, 1])
+        found.append(np.sort(pairs[is_once], axis=1))
+    return np.concatenate(found)
 
 
 def _heavy_strips(faces: list[_Face], heavy_m: float) -> list[Strip]:
