@@ -193,6 +193,11 @@ def _in_drawing(imported: Made, draft: Draft, turn_deg: float) -> Made:
     return with_parts(placed(imported, draft, turn_deg), draft, frame)
 
 
+def _a(title: str) -> str:
+    """Title of a format with its article."""
+    return f"an {title}" if title.startswith("IFC") else f"a {title}"
+
+
 def read_draft(path: Path, options: ImportOptions, report: Report = no_report) -> Draft | FloorPlan:
     """Read a file with the reader of its format."""
     kind = _format_of(path)
@@ -208,10 +213,10 @@ def read_draft(path: Path, options: ImportOptions, report: Report = no_report) -
     if not kind.looks_right(head):
         likely = [other.title for other in FORMATS if other.looks_right(head)]
         known = [SAVE_AS[suffix] for magic, suffix in _MAGIC.items() if head.startswith(magic)]
-        hint = f"; it looks like a {likely[0]}" if likely else ""
+        hint = f"; it looks like {_a(likely[0])}" if likely else ""
         hint = f"; it is {known[0]}" if known else hint
         raise PlanError(
-            f"the file ends in {path.suffix} but does not begin like a {kind.title}{hint}",
+            f"the file ends in {path.suffix} but does not begin like {_a(kind.title)}{hint}",
             origin=str(path),
         )
     return kind.reader()(path, options, report)

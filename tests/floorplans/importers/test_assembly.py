@@ -488,7 +488,7 @@ def test_the_report_states_layers_assumptions_and_changes():
         ("plan", b"x", "no ending"),
         ("plan.dxf", b"", "the file is empty"),
         ("plan.dxf", b"ISO-10303-21;", "it looks like a IFC model"),
-        ("plan.ifc", b"  0\nSECTION", "does not begin like a IFC model"),
+        ("plan.ifc", b"  0\nSECTION", "does not begin like an IFC model"),
     ],
 )
 def test_files_of_another_kind_are_rejected(name: str, content: bytes, said: str, tmp_path: Path):

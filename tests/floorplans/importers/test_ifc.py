@@ -430,7 +430,7 @@ def test_storey_without_walls(tmp_path) -> None:
 def test_files_that_are_no_model(tmp_path, house_file) -> None:
     path = tmp_path / "plan.ifc"
     path.write_bytes(b"PK\x03\x04 zipped")
-    assert "does not begin like a IFC model" in message_of(path).replace("an IFC", "a IFC")
+    assert "does not begin like an IFC model" in message_of(path)
     path.write_text("ISO-10303-21;\nHEADER;\nENDSEC;\nEND-ISO-10303-21;\n")
     assert "not a readable IFC model" in message_of(path)
     text = house_file.read_text()
