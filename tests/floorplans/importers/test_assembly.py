@@ -487,7 +487,7 @@ def test_the_report_states_layers_assumptions_and_changes():
         ("plan.xyz", b"hello", "cannot be imported; known: .dxf"),
         ("plan", b"x", "no ending"),
         ("plan.dxf", b"", "the file is empty"),
-        ("plan.dxf", b"ISO-10303-21;", "it looks like a IFC model"),
+        ("plan.dxf", b"ISO-10303-21;", "it looks like an IFC model"),
         ("plan.ifc", b"  0\nSECTION", "does not begin like an IFC model"),
     ],
 )
