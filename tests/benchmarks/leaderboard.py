@@ -1,8 +1,9 @@
-"""Write the leaderboard of docs/benchmark.md from a results.json of ``rssnav benchmark``.
+"""Write the leaderboard of docs/benchmark.md from results of ``rssnav benchmark``.
 
-    python tests/benchmarks/leaderboard.py results/benchmark/results.json
+    python tests/benchmarks/leaderboard.py results/benchmark/results.json ...
 
-Results of others are merged before: ``rssnav benchmark --with FILE``.
+Results of one extent are merged before: ``rssnav benchmark --with FILE``. Those of several follow
+one another.
 """
 
 from __future__ import annotations
@@ -18,17 +19,20 @@ from rssnav.benchmark.protocol import Extent
 from rssnav.benchmark.submissions import read_scores
 
 
-def leaderboard(path: Path) -> str:
-    """Part of the page."""
+def tables(path: Path) -> str:
+    """Tables of a file, and how much was flown."""
     written = json.loads(path.read_text())["extent"]
     extent = Extent(**{**written, "plans": tuple(written["plans"])})
-    return (
-        f"## Leaderboard\n\n{words(extent)}\n\n{as_markdown(read_scores(path, extent))}\n"
-        f"Measured on: {machine()}."
-    )
+    return f"Flown in: {words(extent)}\n\n{as_markdown(read_scores(path, extent))}"
+
+
+def leaderboard(paths: list[Path]) -> str:
+    """Part of the page."""
+    parts = "\n".join(map(tables, paths))
+    return f"## Leaderboard\n\n{parts}\nMeasured on: {machine()}."
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", type=Path)
+    parser.add_argument("results", type=Path, nargs="+")
     write_part("policies", leaderboard(parser.parse_args().results), PAGE.with_name("benchmark.md"))

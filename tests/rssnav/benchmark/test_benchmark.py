@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from itertools import combinations
 
@@ -32,8 +33,21 @@ def building() -> Building:
 
 
 @pytest.fixture(scope="module")
-def mission(building):
-    return building.mission()
+def maps(tmp_path_factory):
+    """Folder of maps, traced once for all tests."""
+    return tmp_path_factory.mktemp("maps")
+
+
+@pytest.fixture(scope="module")
+def mission(building, maps):
+    return building.mission(maps)
+
+
+@pytest.fixture
+def folder(tmp_path, maps):
+    """Folder of a run that finds its maps traced."""
+    (tmp_path / "maps").symlink_to(maps)
+    return tmp_path
 
 
 def test_scores_are_those_computed_by_hand():
@@ -87,9 +101,9 @@ def test_no_flight_beats_the_clairvoyant(mission, building, name):
         assert np.all(shortest(flights, hops)[flights.found] <= flights.moves[flights.found])
 
 
-def test_oracles_have_an_spl_of_one_and_the_least_energy(tmp_path):
+def test_oracles_have_an_spl_of_one_and_the_least_energy(folder):
     walk = next(entrant for entrant in ENTRANTS if entrant.knows == "places")
-    flown = run([*ORACLES, walk], SMALL, tmp_path, threads=1)
+    flown = run([*ORACLES, walk], SMALL, folder, threads=1)
     by_name = {(r.entrant, r.condition): r for r in flown}
     for name in ("static", "battery"):
         assert spl(by_name["oracle, fewest steps", name]) == 1.0
@@ -159,22 +173,32 @@ WALK = Entrant("walk", "RSS", lambda _: RandomPolicy())
 EAST = Entrant("east", "RSS", lambda _: Stubborn())
 
 
-def test_an_interrupted_run_is_resumed_with_the_same_result(tmp_path):
+def test_an_interrupted_run_is_resumed_with_the_same_result(folder):
     def interrupted(_):
         raise KeyboardInterrupt
 
     broken = Entrant("east", "RSS", interrupted)
-    whole = run([WALK, EAST], SMALL, tmp_path / "whole", threads=1)
+    whole = run([WALK, EAST], SMALL, folder, threads=1)
+    shutil.rmtree(folder / "flights")
     with pytest.raises(KeyboardInterrupt):
-        run([WALK, broken], SMALL, tmp_path / "parts", threads=1)
+        run([WALK, broken], SMALL, folder, threads=1)
     unflyable = Entrant("walk", "RSS", interrupted)  # what is finished is not flown again
-    parts = run([unflyable, EAST], SMALL, tmp_path / "parts", threads=1)
+    parts = run([unflyable, EAST], SMALL, folder, threads=1)
     assert [replace(r, cpu_s=0.0) for r in parts] == [replace(r, cpu_s=0.0) for r in whole]
 
 
-def test_a_damaged_file_of_flights_is_flown_again(tmp_path):
-    before = run([EAST], SMALL, tmp_path, threads=1)
-    (file,) = (tmp_path / "flights").iterdir()
+def test_several_processes_give_the_same_as_one(folder):
+    extent = replace(SMALL, generated=2)
+    alone = run(ENTRANTS[:1], extent, folder, threads=1)
+    shutil.rmtree(folder / "flights")
+    together = run(ENTRANTS[:1], extent, folder, threads=2)
+    assert [r.building for r in together] == sorted(r.building for r in together)
+    assert [replace(r, cpu_s=0.0) for r in together] == [replace(r, cpu_s=0.0) for r in alone]
+
+
+def test_a_damaged_file_of_flights_is_flown_again(folder):
+    before = run([EAST], SMALL, folder, threads=1)
+    (file,) = (folder / "flights").iterdir()
     whole = json.loads(file.read_text())
     for damage in (
         "",
@@ -184,7 +208,7 @@ def test_a_damaged_file_of_flights_is_flown_again(tmp_path):
         json.dumps({**whole, "seeds": 9}),
     ):
         file.write_text(damage)
-        after = run([EAST], SMALL, tmp_path, threads=1)
+        after = run([EAST], SMALL, folder, threads=1)
         assert [replace(r, cpu_s=0.0) for r in after] == [replace(r, cpu_s=0.0) for r in before]
         assert json.loads(file.read_text())["seeds"] == SMALL.seeds
 
