@@ -67,7 +67,8 @@ def as_page(scores: Sequence[Score], extent: Extent) -> str:
 
 def words(extent: Extent) -> str:
     """How much was flown."""
-    parts = [f"{extent.generated} generated buildings (split {extent.split})"]
+    generated = f"{extent.generated} generated buildings (split {extent.split})"
+    parts = [generated] if extent.generated else []
     parts += ["the paper's two"] if extent.paper else []
     parts += [f"{len(extent.plans)} of own plans"] if extent.plans else []
     return f"{', '.join(parts)}; {extent.seeds} seeds."
