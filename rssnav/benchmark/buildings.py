@@ -151,17 +151,24 @@ def generated(split: Split, count: int) -> Iterator[Building]:
     require(split in get_args(Split), "split", split, " or ".join(map(repr, get_args(Split))))
     most = len(FINGERPRINTS[split])
     require(1 <= count <= most, "count", count, f"1 to {most}")
-    for building in unchecked(split, count):
-        if not building.fingerprint.startswith(FINGERPRINTS[split][building.number]):
-            raise WorldError(
-                f"building {building.name} is not that of the benchmark: plans are generated in "
-                "another way than in the version of rssnav that froze it"
-            )
-        yield building
+    yield from map(_checked, unchecked(split, count))
 
 
-def unchecked(split: Split, count: int) -> Iterator[Building]:
-    """Yield buildings of a split without comparing them with the frozen ones."""
+def _checked(building: Building) -> Building:
+    if not building.fingerprint.startswith(FINGERPRINTS[building.site][building.number]):
+        raise WorldError(
+            f"building {building.name} is not that of the benchmark: plans are drawn or generated "
+            "in another way than in the version of rssnav that froze it"
+        )
+    return building
+
+
+def unchecked(site: Split | Literal["paper"], count: int) -> Iterator[Building]:
+    """Yield buildings without comparing them with the frozen ones."""
+    if site == "paper":
+        yield from _paper()
+        return
+    split: Split = site
     seed, number = _FIRST_SEED[split], 0
     while number < count:
         building = _generate(split, number, seed)
@@ -173,6 +180,10 @@ def unchecked(split: Split, count: int) -> Iterator[Building]:
 
 def paper() -> Iterator[Building]:
     """Yield the two buildings of the paper, with its transmitter and others spread over them."""
+    yield from map(_checked, _paper())
+
+
+def _paper() -> Iterator[Building]:
     for number, name in enumerate(("scenario1", "scenario2")):
         plan = floorplans.load(name)
         places = spread_places(plan, PAPER_PLACES)

@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import get_args
 
 from rssnav.arguments import require
 from rssnav.benchmark.buildings import GOAL, Site
@@ -153,8 +154,8 @@ def extent_of(
     ValueError
         For an unknown split, or more buildings than it has.
     """
-    require(split in FINGERPRINTS, "split", split, " or ".join(FINGERPRINTS))
-    known: Split = next(name for name in FINGERPRINTS if name == split)
+    require(split in get_args(Split), "split", split, " or ".join(get_args(Split)))
+    known: Split = next(name for name in get_args(Split) if name == split)
     most = len(FINGERPRINTS[known])
     count = min(whole.generated, most) if generated is None else generated
     require(0 <= count <= most, "buildings", count, f"0 to {most} in the split {split}")

@@ -12,10 +12,10 @@ from textwrap import fill
 
 from rssnav.benchmark import frozen
 from rssnav.benchmark.buildings import unchecked
-from rssnav.benchmark.frozen import FINGERPRINTS
+from rssnav.benchmark.frozen import _TEXT
 
 DIGITS = 8
-BEGIN = "_TEXT: dict[Split, str] = {\n"
+BEGIN = '_TEXT: dict[Split | Literal["paper"], str] = {\n'
 
 
 def main() -> None:
@@ -23,10 +23,10 @@ def main() -> None:
     before, _, after = page.read_text().partition(BEGIN)
     _, _, after = after.partition("}\n")
     parts: list[str] = []
-    for split, known in FINGERPRINTS.items():
-        found = [building.fingerprint[:DIGITS] for building in unchecked(split, len(known))]
+    for site, known in _TEXT.items():
+        found = [building.fingerprint[:DIGITS] for building in unchecked(site, len(known.split()))]
         lines = fill(" ".join(found), 98, initial_indent=" " * 8, subsequent_indent=" " * 8)
-        parts.append(f'    "{split}": """\n{lines}\n    """,\n')
+        parts.append(f'    "{site}": """\n{lines}\n    """,\n')
     page.write_text(before + BEGIN + "".join(parts) + "}\n" + after)
 
 
