@@ -9,7 +9,7 @@ from typing import Literal
 
 Split = Literal["train", "validation", "test"]
 
-_TEXT: dict[Split | Literal["paper"], str] = {
+TEXT: dict[Split | Literal["paper"], str] = {
     "train": """
         23aad804 71c57fae 61a315e7 a8b766ca 002fc1d9 ae76c175 cf71dc9e 6abe73c0 a50a8754 d2a63c50
         bb18f7da 4124b99f 006b8f13 ffe3fc65 def0128c 826ba7ea 9015163a 48633444 e178b9a1 bcdbb604
@@ -51,5 +51,5 @@ _TEXT: dict[Split | Literal["paper"], str] = {
     """,
 }
 
-FINGERPRINTS: dict[str, list[str]] = {site: text.split() for site, text in _TEXT.items()}
+FINGERPRINTS: dict[str, list[str]] = {site: text.split() for site, text in TEXT.items()}
 """First 8 hexadecimal digits of the hash of each building's plan and transmitters, in order."""

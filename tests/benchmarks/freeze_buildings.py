@@ -12,10 +12,10 @@ from textwrap import fill
 
 from rssnav.benchmark import frozen
 from rssnav.benchmark.buildings import unchecked
-from rssnav.benchmark.frozen import _TEXT
+from rssnav.benchmark.frozen import TEXT
 
 DIGITS = 8
-BEGIN = '_TEXT: dict[Split | Literal["paper"], str] = {\n'
+BEGIN = 'TEXT: dict[Split | Literal["paper"], str] = {\n'
 
 
 def main() -> None:
@@ -23,7 +23,7 @@ def main() -> None:
     before, _, after = page.read_text().partition(BEGIN)
     _, _, after = after.partition("}\n")
     parts: list[str] = []
-    for site, known in _TEXT.items():
+    for site, known in TEXT.items():
         found = [building.fingerprint[:DIGITS] for building in unchecked(site, len(known.split()))]
         lines = fill(" ".join(found), 98, initial_indent=" " * 8, subsequent_indent=" " * 8)
         parts.append(f'    "{site}": """\n{lines}\n    """,\n')
