@@ -27,7 +27,7 @@ def add_to(parent: typer.Typer) -> None:
 def run_benchmark(
     quick: Annotated[
         bool,
-        typer.Option("--quick", help="6 generated buildings and 2 seeds: about 3 minutes."),
+        typer.Option("--quick", help="6 generated buildings and 2 seeds: at most 3 minutes."),
     ] = False,
     out: Annotated[Path, typer.Option(metavar="FOLDER", help="Output folder.")] = Path("benchmark"),
     policy: Annotated[
