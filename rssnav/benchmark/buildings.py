@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -190,10 +190,10 @@ def _paper() -> Iterator[Building]:
         yield Building("paper", number, plan, reachable_layout(plan), places, "paper")
 
 
-def own(plans: tuple[Path, ...]) -> Iterator[Building]:
-    """Yield buildings of plan files, with transmitters drawn as in generated ones."""
-    for number, path in enumerate(plans):
-        plan = floorplans.load(path)
+def own(plans: Sequence[str | Path]) -> Iterator[Building]:
+    """Yield buildings of plans, built-in or files, with transmitters drawn as in generated ones."""
+    for number, name in enumerate(plans):
+        plan = floorplans.load(name)
         layout = _largest_part(plan)
         places = _draw_places(plan, layout, np.random.default_rng(0))
         yield Building("own", number, plan, layout, places)

@@ -12,8 +12,8 @@ from typing import Any, Literal, cast, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.arguments import require
 from rssnav.benchmark.buildings import Building
+from rssnav.benchmark.errors import BenchmarkError, check
 from rssnav.benchmark.protocol import Condition
 from rssnav.missions import HOVER, Layout, Mission, Policy, RandomPolicy, Seen, plan_mission
 from rssnav.policies import (
@@ -170,14 +170,14 @@ def entrants_of(track: str | None) -> tuple[Entrant, ...]:
 
     Raises
     ------
-    ValueError
+    BenchmarkError
         For an unknown track.
     """
     return tuple(e for e in ENTRANTS if track is None or e.knows == _known(track))
 
 
 def _known(track: str) -> Knows:
-    require(track in get_args(Knows), "track", track, ", ".join(map(repr, get_args(Knows))))
+    check(track in get_args(Knows), "track", track, ", ".join(map(repr, get_args(Knows))))
     return cast(Knows, track)
 
 
@@ -186,7 +186,7 @@ def entrant_of(text: str, knows: str, name: str | None = None) -> Entrant:
 
     Raises
     ------
-    ValueError
+    BenchmarkError
         Unless there is such a function and track.
     """
     track = _known(knows)
@@ -196,7 +196,7 @@ def entrant_of(text: str, knows: str, name: str | None = None) -> Entrant:
     try:
         make = getattr(import_module(module), function)
     except (ImportError, AttributeError, ValueError) as error:
-        raise ValueError(
+        raise BenchmarkError(
             f"policy {text!r}: {error}; expected module:function with a function that takes a "
             "Briefing and returns a policy"
         ) from error
@@ -213,12 +213,15 @@ class Guarded:
     """
 
     def __init__(self, policy: Policy) -> None:
+        for method in ("begin", "act"):
+            holds = callable(getattr(policy, method, None))
+            check(holds, "policy", policy, f"an object with a method {method}")
         self._policy, self.collisions = policy, 0
 
     @property
     def name(self) -> str:
-        """Name of the policy."""
-        return self._policy.name
+        """Name of the policy, if it has one."""
+        return getattr(self._policy, "name", "policy")
 
     def begin(self, generator: np.random.Generator) -> None:
         """Begin a flight."""

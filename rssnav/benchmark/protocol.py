@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import get_args
 
-from rssnav.arguments import require
 from rssnav.benchmark.buildings import GOAL, Site
+from rssnav.benchmark.errors import check
 from rssnav.benchmark.frozen import FINGERPRINTS, Split
 from rssnav.discrete_states import Fluctuation
 from rssnav.missions import Mission, ModeProcess, MultirotorEnergy, Observation, Task
@@ -151,14 +151,14 @@ def extent_of(
 
     Raises
     ------
-    ValueError
+    BenchmarkError
         For an unknown split, or more buildings than it has.
     """
-    require(split in get_args(Split), "split", split, " or ".join(get_args(Split)))
+    check(split in get_args(Split), "split", split, " or ".join(get_args(Split)))
     known: Split = next(name for name in get_args(Split) if name == split)
     most = len(FINGERPRINTS[known])
     count = min(whole.generated, most) if generated is None else generated
-    require(0 <= count <= most, "buildings", count, f"0 to {most} in the split {split}")
+    check(0 <= count <= most, "buildings", count, f"0 to {most} in the split {split}")
     extent = replace(
         whole,
         paper=whole.paper and known == "test",
@@ -167,7 +167,7 @@ def extent_of(
         plans=tuple(map(str, plans)),
         seeds=seeds or whole.seeds,
     )
-    require(extent.buildings > 0, "buildings", count, "at least 1, or a plan")
+    check(extent.buildings > 0, "buildings", count, "at least 1, or a plan")
     return extent
 
 

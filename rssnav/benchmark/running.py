@@ -134,7 +134,7 @@ def _show_nothing(stage: str, done: int, total: int) -> None:
 
 def buildings(extent: Extent) -> Iterator[Building]:
     """Yield the buildings of an extent; those that take longest first."""
-    parts = [own(tuple(map(Path, extent.plans)))]
+    parts = [own(extent.plans)]
     if extent.paper:
         parts.append(paper())
     if extent.generated:

@@ -14,13 +14,10 @@ from typing import Any, get_args
 from raytrace.trace import TRACER_VERSION
 from rssnav.benchmark.buildings import Site
 from rssnav.benchmark.entrants import Knows
+from rssnav.benchmark.errors import BenchmarkError
 from rssnav.benchmark.protocol import BENCHMARK_VERSION, CONDITIONS, Extent
 from rssnav.benchmark.scores import WITHIN_S, Score
 from rssnav.experiments.statistics import Estimate
-
-
-class SubmissionError(ValueError):
-    """A file is no result of this version of the benchmark."""
 
 
 def as_json(scores: Sequence[Score], extent: Extent) -> str:
@@ -42,27 +39,29 @@ def read_scores(path: Path, extent: Extent) -> list[Score]:
 
     Raises
     ------
-    SubmissionError
+    BenchmarkError
         With the file, the entry and what is expected, unless it holds such results.
     """
     try:
         content = json.loads(path.read_text())
-    except (OSError, ValueError) as error:
-        raise SubmissionError(f"{path}: {error}") from error
+    except OSError as error:
+        raise BenchmarkError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise BenchmarkError(f"{path}: {error}") from error
     if not isinstance(content, dict) or content.get("benchmark") != "rssnav":
-        raise SubmissionError(f"{path}: not a results.json of rssnav benchmark")
+        raise BenchmarkError(f"{path}: not a results.json of rssnav benchmark")
     for key, expected in (
         ("version", BENCHMARK_VERSION),
         ("extent", json.loads(json.dumps(asdict(extent)))),
     ):
         if content.get(key) != expected:
-            raise SubmissionError(
+            raise BenchmarkError(
                 f"{path}: {key}: {content.get(key)!r}; only results with {expected!r} compare with "
                 "these"
             )
     rows = content.get("scores")
     if not isinstance(rows, list) or not rows:
-        raise SubmissionError(f"{path}: scores: expected a list with at least one entry")
+        raise BenchmarkError(f"{path}: scores: expected a list with at least one entry")
     return [_score(row, f"{path}: scores[{k}]") for k, row in enumerate(rows)]
 
 
@@ -71,14 +70,14 @@ def merged(parts: Sequence[Sequence[Score]]) -> list[Score]:
 
     Raises
     ------
-    SubmissionError
+    BenchmarkError
         When two have an entrant of the same name and track.
     """
     found: dict[tuple[str, ...], Score] = {}
     for score in (score for part in parts for score in part):
         key = (score.site, score.condition, score.knows, score.entrant)
         if key in found:
-            raise SubmissionError(
+            raise BenchmarkError(
                 f"entrant {score.entrant!r} of track {score.knows!r} is in two results; give one "
                 "another name (--name)"
             )
@@ -88,16 +87,16 @@ def merged(parts: Sequence[Sequence[Score]]) -> list[Score]:
 
 def _score(row: Any, where: str) -> Score:
     if not isinstance(row, dict):
-        raise SubmissionError(f"{where}: expected a table, got {row!r}")
+        raise BenchmarkError(f"{where}: expected a table, got {row!r}")
     names = [field.name for field in fields(Score)]
     for name in names:
         if name not in row:
-            raise SubmissionError(f"{where}: {name} is missing")
+            raise BenchmarkError(f"{where}: {name} is missing")
         holds, expected = _EXPECTED[name]
         if not holds(row[name]):
-            raise SubmissionError(f"{where}: {name}: {row[name]!r}; expected {expected}")
+            raise BenchmarkError(f"{where}: {name}: {row[name]!r}; expected {expected}")
     if unknown := sorted(set(row) - set(names)):
-        raise SubmissionError(f"{where}: {unknown[0]}: no such key; there are {', '.join(names)}")
+        raise BenchmarkError(f"{where}: {unknown[0]}: no such key; there are {', '.join(names)}")
     for name in ("spl", "success", "false_alarms"):
         row = {**row, name: Estimate(**row[name])}
     score = Score(**row)
@@ -120,7 +119,7 @@ def _check_together(score: Score, where: str) -> None:
          "if less than half are found"),
     ):  # fmt: skip
         if not holds:
-            raise SubmissionError(f"{where}: expected {expected}")
+            raise BenchmarkError(f"{where}: expected {expected}")
 
 
 def _number(low: float, high: float) -> Callable[[Any], bool]:

@@ -33,11 +33,12 @@ def is_anticipated(error: Exception) -> bool:
     from floorplans import PlanError
     from raytrace import AntennaError, MapFileError, MemoryLimitError, SceneError
     from rssnav import ResultFileError, WorldError
+    from rssnav.benchmark.errors import BenchmarkError
     from rssnav.datasets.errors import DatasetError
     from rssnav.measurements.survey import SurveyError
 
     unusable = (PlanError, SceneError, AntennaError, MapFileError, WorldError, ResultFileError)
-    anticipated = (*unusable, SurveyError, DatasetError, MemoryLimitError, OSError)
+    anticipated = (*unusable, BenchmarkError, SurveyError, DatasetError, MemoryLimitError, OSError)
     return isinstance(error, anticipated) and not isinstance(error, BrokenPipeError)
 
 

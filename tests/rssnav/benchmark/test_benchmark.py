@@ -15,6 +15,7 @@ from small_missions import room_mission
 import floorplans
 from rssnav.benchmark.buildings import GOAL, LEAST_STEPS, Building, generated, own, paper
 from rssnav.benchmark.entrants import ENTRANTS, Briefing, Entrant, Guarded, entrant_of
+from rssnav.benchmark.errors import BenchmarkError
 from rssnav.benchmark.frozen import FINGERPRINTS
 from rssnav.benchmark.protocol import CONDITIONS, FULL, Extent, extent_of
 from rssnav.benchmark.running import run, shortest
@@ -225,15 +226,20 @@ def test_plans_of_ones_own_have_transmitters_in_reach(tmp_path):
     assert Hypotheses.of_mission(mission, Task(GOAL)).hops.max() < 1000
 
 
+def test_what_is_no_policy_is_named():
+    with pytest.raises(BenchmarkError, match="policy: 3; expected an object with a method begin"):
+        Guarded(3)
+
+
 def test_unknown_policies_tracks_and_splits_are_named():
-    with pytest.raises(ValueError, match="expected module:function"):
+    with pytest.raises(BenchmarkError, match="expected module:function"):
         entrant_of("nowhere:make", "RSS")
-    with pytest.raises(ValueError, match="track"):
+    with pytest.raises(BenchmarkError, match="track"):
         entrant_of("json:loads", "everything")
-    with pytest.raises(ValueError, match="split"):
+    with pytest.raises(BenchmarkError, match="split"):
         extent_of(FULL, "dev", None, ())
-    with pytest.raises(ValueError, match="0 to 50"):
+    with pytest.raises(BenchmarkError, match="0 to 50"):
         extent_of(FULL, "test", 51, ())
-    with pytest.raises(ValueError, match="at least 1, or a plan"):
+    with pytest.raises(BenchmarkError, match="at least 1, or a plan"):
         extent_of(FULL, "train", 0, ())
     assert extent_of(FULL, "test", 0, ()).buildings == 2

@@ -8,10 +8,11 @@ from dataclasses import replace
 import pytest
 from benchmark_records import record
 
+from rssnav.benchmark.errors import BenchmarkError
 from rssnav.benchmark.page import as_markdown, as_page, write
 from rssnav.benchmark.protocol import FULL, QUICK
 from rssnav.benchmark.scores import scores
-from rssnav.benchmark.submissions import SubmissionError, as_json, merged, read_scores
+from rssnav.benchmark.submissions import as_json, merged, read_scores
 
 
 @pytest.fixture
@@ -67,7 +68,7 @@ DAMAGE = {
 def test_what_is_wrong_is_named_with_the_file(file, change, message):
     path, _ = file
     changed(path, change)
-    with pytest.raises(SubmissionError, match=message) as error:
+    with pytest.raises(BenchmarkError, match=message) as error:
         read_scores(path, FULL)
     assert str(path) in str(error.value)
 
@@ -76,14 +77,14 @@ def test_what_is_wrong_is_named_with_the_file(file, change, message):
 def test_no_result_is_refused(tmp_path, text):
     path = tmp_path / "results.json"
     path.write_text(text)
-    with pytest.raises(SubmissionError, match=r"results\.json"):
+    with pytest.raises(BenchmarkError, match=r"results\.json"):
         read_scores(path, FULL)
-    with pytest.raises(SubmissionError, match=r"missing\.json"):
+    with pytest.raises(BenchmarkError, match=r"missing\.json"):
         read_scores(tmp_path / "missing.json", FULL)
 
 
 def test_a_quick_result_is_not_mixed_with_a_full_one(file):
-    with pytest.raises(SubmissionError, match="extent"):
+    with pytest.raises(BenchmarkError, match="extent"):
         read_scores(file[0], QUICK)
 
 
@@ -91,7 +92,7 @@ def test_results_of_several_are_merged_unless_they_have_the_same_name(file):
     _, found = file
     other = [replace(score, entrant="other") for score in found]
     assert merged([found, other]) == [*found, *other]
-    with pytest.raises(SubmissionError, match="another name"):
+    with pytest.raises(BenchmarkError, match="another name"):
         merged([found, found])
 
 
