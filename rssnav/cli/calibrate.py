@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -155,7 +156,7 @@ def calibrate_plan(
 
 def _toml(plan: FloorPlan, name: str, survey: Path) -> str:
     """Return the text of a calibrated plan, with where its materials come from."""
-    origin = f"materials fitted to {survey.name} by rssnav calibrate, from {Path(name).name}"
+    origin = f"fitted to {survey.name} by rssnav calibrate, from {Path(name).name}"
     return f"# {printable(' '.join(origin.split()))}\n{floorplans.dumps(plan)}"
 
 
@@ -197,8 +198,10 @@ def _print(found: Calibration) -> None:
 def _of_door(state: DoorState) -> str:
     was, now = ("open" if is_open else "shut" for is_open in (state.was_open, state.is_open))
     x, y = state.place
-    told = f"the readings tell no state; kept {was}"
-    if state.is_told:
+    told = f"{was}, as in the plan; the readings do not tell"
+    if math.isinf(state.evidence):
+        told = f"{was}, as the plan needs it"
+    elif state.is_told:
         told = f"{now}, as in the plan" if now == was else f"{now}, and not {was} as in the plan"
         told += f" (log likelihood ratio {state.evidence:.1f})"
     return f"door at ({x:.2f}, {y:.2f}) m: {told}"

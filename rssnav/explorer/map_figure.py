@@ -177,11 +177,15 @@ class MapFigure:
             "ys": [line[:, 1] for line in vertices[::-1]],
             "colour": colours[::-1],
         }
-        self.fade(FADED if vertices else PLAIN)
+        self.fade()
 
-    def fade(self, alpha: float) -> None:
-        """Show the map in its own colours (`PLAIN`), paler ones (`FADED`), or not (`HIDDEN`)."""
-        self._picture.glyph.update(global_alpha=alpha)
+    def fade(self) -> None:
+        """Show the map in pale colours under paths, and not at all under a belief."""
+        alpha = FADED if len(self._paths.data["xs"]) else PLAIN
+        if self.search.has_belief:
+            alpha = HIDDEN
+        if self._picture.glyph.global_alpha != alpha:
+            self._picture.glyph.update(global_alpha=alpha)
 
     def show_flight(self, position: NDArray[np.float64], step: int, agent: str) -> None:
         """Draw a flight in its agent's colour: all of it lightly, trail and UAV over it.

@@ -38,6 +38,12 @@ class SearchOverlay:
         glyph = Image(image="image", x="x", y="y", dw="dw", dh="dh", color_mapper=self._mapper)
         model.add_glyph(self._belief, glyph)
         self._trails: list[tuple[ColumnDataSource, ColumnDataSource]] = []
+        self._shown: NDArray[np.float32] | None = None
+
+    @property
+    def has_belief(self) -> bool:
+        """Whether a belief is shown."""
+        return self._shown is not None
 
     def draw_flights(self) -> None:
         """Draw what will show the flights, above all that the figure has so far."""
@@ -72,6 +78,9 @@ class SearchOverlay:
         for (trail, uav), position in zip(self._trails, positions, strict=True):
             trail.data = _columns(position)
             uav.data = _columns(position[-1:])
+        if belief is self._shown:
+            return
+        self._shown = belief
         if belief is None:
             self._belief.data = dict(_NO_IMAGE)
             return
@@ -89,8 +98,10 @@ class SearchOverlay:
         """Remove all of it."""
         for sources in self._trails:
             for source in sources:
-                source.data = dict(_NO_POINTS)
-        self._belief.data = dict(_NO_IMAGE)
+                if len(source.data["x"]):
+                    source.data = dict(_NO_POINTS)
+        if self.has_belief:
+            self._shown, self._belief.data = None, dict(_NO_IMAGE)
 
 
 def _columns(position: NDArray[np.float64]) -> dict[str, Any]:

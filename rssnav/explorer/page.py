@@ -10,7 +10,7 @@ from rssnav.explorer.cell_paths import strongest
 from rssnav.explorer.downloads import Downloads
 from rssnav.explorer.flight_player import FlightPlayer
 from rssnav.explorer.help_panel import LEGEND, HelpPanel
-from rssnav.explorer.map_figure import HIDDEN, PLAIN, MapFigure
+from rssnav.explorer.map_figure import MapFigure
 from rssnav.explorer.map_panel import MapPanel
 from rssnav.explorer.plan_panel import PlanPanel
 from rssnav.explorer.search_panel import SearchPanel, Shown
@@ -157,6 +157,7 @@ class Page:
         self._show_training()
         self._show_search()
         self._show_space()
+        self._figure.fade()
         self._status.object = self._status_words()
 
     def _new_figure(self) -> None:
@@ -256,7 +257,6 @@ class Page:
     def _show_searches(self, shown: Shown) -> None:
         positions, belief = shown
         self._figure.search.show(positions, belief, self._session.grid)
-        self._figure.fade(PLAIN if belief is None else HIDDEN)
 
     def _switch_tab(self, _event: Any) -> None:
         """Show flights while the tab of training or search is open, and paths otherwise."""
@@ -265,6 +265,7 @@ class Page:
             self._figure.hide_flight()
         if not self._search_panel.show_player(self._tabs.active == SEARCH_TAB):
             self._figure.search.hide()
+        self._figure.fade()
 
     def _switch_view(self, event: Any) -> None:
         """Show the map, or the building in 3D."""

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from threading import Event, Thread
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ from rssnav.world import GridWorld, WorldError
 LOGGER = logging.getLogger(__name__)
 
 MAX_STEPS = 2000
-MOST_GAUSSIAN_CELLS = 2500
+MOST_GAUSSIAN_CELLS = 1000
 """Cells whose covariances are kept at most."""
 
 KEPT_BELIEFS = 1 << 20
@@ -88,7 +89,7 @@ class SearchSettings:
     speed : int
         Cells per step along an axis.
     max_steps : int
-        Steps after which a flight ends.
+        Seconds after which a flight ends: each step takes one, and each reading in place.
     seed : int
     """
 
@@ -204,7 +205,8 @@ class LiveSearch:
         try:
             self._fly()
         except SupersededError:
-            return
+            for flight in self.flights:
+                flight.end = flight.end or "stopped"
         except (WorldError, ValueError) as error:
             self.problem = str(error)
         except Exception:
@@ -239,7 +241,8 @@ class LiveSearch:
     ) -> Iterator[int]:
         """Fly, a step each time."""
         settings = self.settings
-        policy = SEARCHERS[flight.name](world.layout, self.traced.radio_map)
+        policy: Any = SEARCHERS[flight.name](world.layout, self.traced.radio_map)
+        believes = flight.name in BELIEVERS
         policy.begin(np.random.default_rng((settings.seed, number)))
         flight.every = math.ceil(math.prod(world.shape) * settings.max_steps / KEPT_BELIEFS)
         seen = flyer.begin(generator_states(settings.seed, 0)[:4])
@@ -247,9 +250,8 @@ class LiveSearch:
         status = stepping.RUNNING
         while status == stepping.RUNNING:
             action = policy.act(seen, flyer.mask())
-            belief = getattr(policy, "belief", None)
-            if belief is not None and flight.steps % flight.every == 0:
-                flight.beliefs.append(np.array(belief, dtype=np.float32))
+            if believes and flight.steps % flight.every == 0:
+                flight.beliefs.append(np.array(policy.belief, dtype=np.float32))
             _, status = flyer.step(action)
             seen = flyer.seen()
             flight.position.append(world.position[seen.cell])

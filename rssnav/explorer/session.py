@@ -98,6 +98,7 @@ class Session:
         self._uploaded: Upload | SurveyFile | str | None = None
         self.import_report: tuple[str, ...] = ()
         self._resuming: SavedSession | None = None
+        self._labelled: tuple[TracedMap, TracedMap] | None = None
         self.open_plan(plan)
 
     def close(self) -> None:
@@ -346,8 +347,14 @@ class Session:
             return None
         if latest.plan.source != self.plan.source:
             return None
-        labelled = latest.radio_map.with_plan(floorplans.dumps(self.plan), self.plan.sha256)
-        return replace(latest, plan=self.plan, radio_map=labelled)
+        if (
+            self._labelled is None
+            or self._labelled[0] is not latest
+            or (self._labelled[1].plan is not self.plan)
+        ):
+            labelled = latest.radio_map.with_plan(floorplans.dumps(self.plan), self.plan.sha256)
+            self._labelled = latest, replace(latest, plan=self.plan, radio_map=labelled)
+        return self._labelled[1]
 
     def _map_to_fly_in(self, what: str) -> TracedMap | None:
         """Return the complete map, or say that there is none yet."""

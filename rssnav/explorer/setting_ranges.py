@@ -45,7 +45,7 @@ TRAINING = {
 }
 SEARCH = {
     "speed": TRAINING["speed"],
-    "max_steps": Range("Steps at most", 1, MAX_STEPS, 100, whole=True),
+    "max_steps": Range("Seconds at most", 1, MAX_STEPS, 100, whole=True),
     "goal_rss_dbm": TRAINING["goal_rss_dbm"],
     "sigma_db": Range("Fluctuation \u03c3 [dB]", 0.0, 20.0, 0.5),
     "confirmations": Range("Readings to confirm", 1, 100, whole=True),

@@ -1,7 +1,7 @@
 """A plan calibrated with a survey: what was fitted, and how far traced RSS is off before and after.
 
-Everything that is said of the fit is computed from readings that were held out: the whole procedure
-is repeated without them.
+How far traced RSS is off is computed from readings that were held out: the whole procedure is
+repeated without them. Intervals of properties and the evidence for doors are of all readings.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from floorplans import FloorPlan
+from floorplans import FloorPlan, PlanMaterial
 from raytrace import Scene
 from rssnav.measurements.calibration import Calibrated, TracedSurvey
 from rssnav.measurements.doors import NO_DOORS, DoorSearch, DoorState
@@ -20,6 +20,7 @@ from rssnav.measurements.held_out_fits import Change, CurvePoint, Work, change_o
 from rssnav.measurements.hold_out import SQUARE_M, by_space, by_transmitter
 from rssnav.measurements.material_values import (
     MaterialValue,
+    dielectrics_in,
     material_values,
     plan_values,
     plan_with,
@@ -163,9 +164,11 @@ def calibrate(
     if doors:
         search = DoorSearch(plan, survey, settings, groups, edition, steps.add)
         changed = search.changed(everything)
+        if materials is not None:
+            material_values(scene.slabs, settings.frequency_hz, materials, _of_loss(plan))
         plan, scene = search.plan(changed), search.scene(changed)
-    of_loss = {m.name: m for m in plan.materials if m.loss_db is not None}
-    of = material_values(scene.slabs, settings.frequency_hz, materials, of_loss)
+        materials = _still_there(materials, scene)
+    of = material_values(scene.slabs, settings.frequency_hz, materials, _of_loss(plan))
     traced = TracedSurvey.of(scene, survey, settings, lambda done, _: steps.advance())
     at_plan = traced.levels_db(of, plan_values(of), slopes=True)
     work = Work(traced, of, groups, at_plan, search, changed)
@@ -192,6 +195,16 @@ def calibrate(
         _doubts(found, settled),
         () if search is None else search.states(changed),
     )
+
+
+def _of_loss(plan: FloorPlan) -> dict[str, PlanMaterial]:
+    return {m.name: m for m in plan.materials if m.loss_db is not None}
+
+
+def _still_there(materials: Sequence[str] | None, scene: Scene) -> list[str] | None:
+    """Leave out materials that no door or wall is made of any more; None for all."""
+    known = dielectrics_in(scene.slabs)
+    return None if materials is None else [name for name in materials if name in known] or None
 
 
 MOST_ROUNDS = 3

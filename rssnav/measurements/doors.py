@@ -1,11 +1,12 @@
 """Which doors stood open and which were shut during a survey, as far as its readings tell.
 
 The survey is traced with each door in its other state. The door that explains the readings best is
-changed, and so on until none does so clearly.
+changed, and so on until none does so clearly; a change that others have made needless is undone.
 """
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Collection
 from contextlib import suppress
@@ -25,6 +26,9 @@ from rssnav.scenes import scene_of
 
 LEAF, LEAF_M = "wood", 0.04
 """A shut door where the plan has none to go by, and its thickness [m]."""
+
+BELOW_DB, SILENT_DBM = 10.0, -150.0
+"""How far readings without a path are below the weakest one [dB]; their level without any [dBm]."""
 
 KEPT = 4
 """Traces of the survey with other states of doors that are kept with all their paths."""
@@ -54,7 +58,8 @@ class DoorState:
     was_open, is_open
         In the plan, and by the readings.
     evidence
-        How much more likely, by the logarithm of the likelihood, this state is than the other.
+        How much more likely, by the logarithm of the likelihood of all readings, this state is than
+        the other; infinite where the plan allows no other.
     """
 
     door: Door
@@ -66,7 +71,7 @@ class DoorState:
     @property
     def is_told(self) -> bool:
         """Whether the readings tell the state; otherwise it is the plan's."""
-        return self.evidence >= CLEAR
+        return CLEAR <= self.evidence < math.inf
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers, for programs; no evidence where the other state is impossible."""
@@ -178,12 +183,17 @@ class DoorSearch:
     def changed(self, fit: Bools) -> frozenset[Door]:
         """Return the doors whose other state the readings `fit` (n,) tell."""
         found = NO_DOORS
-        while True:
+        for _ in range(4 * len(self.doors)):
             gains = {door: self._gain(found, door, fit) for door in self.doors}
-            best = max(gains, key=lambda door: gains[door], default=None)
-            if best is None or gains[best] < CLEAR:
-                return found
-            found = found ^ {best}
+            best = max(gains, key=lambda door: gains[door])
+            if gains[best] >= CLEAR:
+                found = found ^ {best}
+                continue
+            doubtful = [door for door in found if -gains[door] < CLEAR]
+            if not doubtful:
+                break
+            found = found - {max(doubtful, key=lambda door: gains[door])}
+        return found
 
     def states(self, changed: frozenset[Door]) -> tuple[DoorState, ...]:
         """Say what all readings tell of each door, where some are in their other state."""
@@ -212,15 +222,24 @@ class DoorSearch:
     def _gain(self, changed: frozenset[Door], door: Door, fit: Bools) -> float:
         """Logarithm of how much likelier readings become as a door changes its state.
 
-        -inf where readings have no path then, or doors cannot change together.
+        -inf where the plan does not allow it.
         """
         now, then = self.level_dbm(changed), self.level_dbm(changed ^ {door})
-        if now is None or then is None or not np.isfinite(then[np.isfinite(now)]).all():
-            return -np.inf
+        if now is None or then is None:
+            return -math.inf
         return self._loss(now, fit) - self._loss(then, fit)
 
     def _loss(self, level: Floats, fit: Bools) -> float:
-        """Soft L1 loss, as materials are fitted with."""
-        predicted = Levels(level[fit], np.zeros((int(fit.sum()), 0)))
-        residual, *_ = residuals_db(self._survey.rows(fit), self._groups[fit], predicted)
+        """Soft L1 loss, as materials are fitted with.
+
+        A reading without a path is predicted somewhat below the weakest one that has one.
+        """
+        survey, level = self._survey.rows(fit), level[fit]
+        predicted = Levels(level, np.zeros((len(level), 0)))
+        residual, _, offset = residuals_db(survey, self._groups[fit], predicted)
+        heard = np.isfinite(level)
+        floor_dbm = float(level[heard].min()) - BELOW_DB if heard.any() else SILENT_DBM
+        missed = ~heard & ~survey.is_censored
+        above = survey.rss_dbm[missed] - offset[missed] - floor_dbm
+        residual[missed] = np.maximum(above, 0.0)
         return float(np.sum(np.sqrt(1.0 + (residual / NOISE_DB) ** 2) - 1.0))

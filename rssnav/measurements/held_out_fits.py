@@ -75,7 +75,10 @@ class Work(NamedTuple):
     changed: frozenset[Door]
 
     def base(self, fit: Bools) -> tuple[TracedSurvey, Levels]:
-        """Return `traced` and `at_plan` with the states of doors that some of the readings tell."""
+        """Return `traced` and `at_plan` with the states of doors that some of the readings tell.
+
+        Other states than those of `traced` are traced with the plan's materials.
+        """
         changed = self.changed if self.doors is None else self.doors.changed(fit)
         if self.doors is None or changed == self.changed:
             return self.traced, self.at_plan

@@ -14,7 +14,9 @@ def write_part(name: str, text: str, page: Path = PAGE) -> None:
     if begin not in content:
         content = f"{content.rstrip()}\n\n{begin}\n{end}\n"
     before, rest = content.split(begin)
-    _, after = rest.split(end)
+    replaced, after = rest.split(end)
+    if "written by make" in replaced:
+        raise ValueError(f"{page.name}: part {name} holds another part, which would be lost")
     page.write_text(f"{before}{begin}\n\n{text.strip()}\n\n{end}{after}")
 
 

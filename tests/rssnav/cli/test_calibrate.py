@@ -69,7 +69,7 @@ def test_a_better_plan_is_written_with_its_report(files, tmp_path) -> None:
     fitted = next(row for row in found["fitted"] if row["property"] == "conductivity")
     assert fitted["material"] == "plasterboard"
     assert fitted["after"] > 2.0 * fitted["before"]
-    assert out.read_text().startswith("# materials fitted to survey.csv by rssnav calibrate")
+    assert out.read_text().startswith("# fitted to survey.csv by rssnav calibrate")
     validated = json.loads(done("validate", out, survey, "--transmitters", places, *QUICK,
                                 "--antenna", "dipole", "--json"))  # fmt: skip
     after = validated["models"]["tracer"]["held_out_by_space"]["sigma_db"]

@@ -536,7 +536,8 @@ def test_the_tooltip_tells_outside_from_without_a_path() -> None:
     dark = np.where(radio_map.grid.x < 1, -np.inf, radio_map.rss_dbm)
     shown = MapFigure(plan, 2.0, on_move=print, on_drag=print, on_tap=print, on_step=print)
     shown.show_map(replace(radio_map, rss_dbm=dark))
-    (picture,) = (r for r in shown.model.renderers if isinstance(r.glyph, Image))
+    images = (r for r in shown.model.renderers if isinstance(r.glyph, Image))
+    (picture,) = (r for r in images if "rss" in r.data_source.data)
     values = picture.data_source.data["rss"][0]
     outside = (radio_map.grid.x > 3) & (radio_map.grid.y[:, None] > 2)
     assert (np.isnan(values) == outside).all()

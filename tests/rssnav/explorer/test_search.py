@@ -1,5 +1,6 @@
 """Two searchers in the explorer: their flights, beliefs and limits."""
 
+import time
 from collections.abc import Iterator
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import floorplans
 from raytrace import TraceConfig
 from rssnav.explorer.map_drawing import empty_figure
+from rssnav.explorer.map_figure import FADED, HIDDEN, PLAIN, MapFigure
 from rssnav.explorer.map_search import SearchOverlay
 from rssnav.explorer.map_settings import MapSettings
 from rssnav.explorer.search_panel import SearchPanel
@@ -22,6 +24,7 @@ from rssnav.explorer.searching import (
 from rssnav.explorer.session import Session
 from rssnav.explorer.tracing import MapCache, TracedMap
 from rssnav.maps import make_map
+from rssnav.missions import RandomPolicy
 
 pytestmark = pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")  # of Panel
 
@@ -86,13 +89,26 @@ def test_a_flight_ends_after_its_steps(traced: TracedMap) -> None:
     assert search.steps == 3
 
 
-def test_a_search_that_is_stopped_ends(traced: TracedMap) -> None:
-    search = LiveSearch(traced, SearchSettings(("Random walk", "Random walk"), GOAL_DBM))
-    search.stop()
+@pytest.mark.parametrize("seconds", [0.0, 0.2])
+def test_a_search_that_is_stopped_ends(
+    traced: TracedMap, monkeypatch: pytest.MonkeyPatch, seconds: float
+) -> None:
+    """Before it begins, and in flight."""
+    slow = RandomPolicy()
+    act = slow.act
+    monkeypatch.setattr(slow, "act", lambda *seen: (time.sleep(0.02), act(*seen))[1])
+    monkeypatch.setitem(SEARCHERS, "Random walk", lambda _layout, _map: slow)
+    settings = SearchSettings(("Random walk", "Random walk"), -25.0, max_steps=MAX_STEPS)
+    search = LiveSearch(traced, settings)
+    if not seconds:
+        search.stop()
     search.start()
+    time.sleep(seconds)
+    search.stop()
     search.join(60.0)
     assert not search.running
-    assert search.steps == 0
+    assert [flight.end for flight in search.flights] == ["stopped"] * 2
+    assert (search.steps > 0) == (seconds > 0.0)
 
 
 def test_a_goal_that_no_cell_reaches_is_told(traced: TracedMap) -> None:
@@ -134,12 +150,34 @@ def test_what_is_hidden_leaves_nothing_on_the_map(traced: TracedMap) -> None:
     assert not any(len(column) for source in sources for column in source.data.values())
 
 
+def test_the_map_is_hidden_under_a_belief_only(traced: TracedMap) -> None:
+    figure = MapFigure(FLAT, 2.0, on_move=print, on_drag=print, on_tap=print, on_step=print)
+    grid, line = traced.radio_map.grid, np.array([[0.5, 0.5], [1.5, 0.5]])
+    belief = np.full((9, 12), 1 / 108, dtype=np.float32)
+    alphas = []
+    for change in (
+        lambda: figure.show_paths([line], np.zeros(1)),
+        lambda: figure.search.show((line, line), belief, grid),
+        lambda: figure.show_paths([], np.empty(0)),
+        lambda: figure.search.show((line, line), None, grid),
+        lambda: figure.search.show((line, line), belief, grid),
+        figure.search.hide,
+    ):
+        change()
+        figure.fade()
+        alphas.append(figure._picture.glyph.global_alpha)
+    assert alphas == [FADED, HIDDEN, HIDDEN, PLAIN, HIDDEN, PLAIN]
+
+
 @pytest.fixture
 def session() -> Iterator[Session]:
     opened = Session(FLAT, cache=MapCache())
     opened.change_settings(MapSettings(cell_size_m=1.5, max_reflections=1))
+    ends_s = time.monotonic() + 60.0
     while opened.complete_map is None:
-        pass
+        assert opened.maps.problem == ""
+        assert time.monotonic() < ends_s
+        time.sleep(0.005)
     yield opened
     opened.close()
 

@@ -12,7 +12,15 @@ from floorplans import FloorPlan, Opening
 from raytrace import TraceConfig
 from rssnav.measurements.calibrate import Calibration, calibrate
 from rssnav.measurements.calibration_page import calibration_page
-from rssnav.measurements.doors import CLEAR, LEAF, Door, DoorSearch, doors_of, with_changed
+from rssnav.measurements.doors import (
+    CLEAR,
+    LEAF,
+    Door,
+    DoorSearch,
+    DoorState,
+    doors_of,
+    with_changed,
+)
 from rssnav.measurements.survey import Survey
 from rssnav.measurements.traced import TraceSettings, traced_dbm
 from rssnav.scenes import scene_of
@@ -94,6 +102,64 @@ def test_what_readings_do_not_tell_stays_as_it_is() -> None:
     assert not changed
     assert not any(state.is_told for state in states)
     assert all(state.is_open == state.was_open for state in states)
+
+
+def cut_off(*shut: Door) -> tuple[FloorPlan, TraceSettings]:
+    """Return the building and limits with which no path passes its partition."""
+    return building(*shut), TraceSettings(TraceConfig(2, 1, 0))
+
+
+def states_in(plan: FloorPlan, settings: TraceSettings, survey: Survey) -> dict[Door, DoorState]:
+    search = DoorSearch(plan, survey, settings, np.zeros(len(survey), int), None, lambda: None)
+    changed = search.changed(np.ones(len(survey), bool))
+    return {state.door: state for state in search.states(changed)}
+
+
+def far_and_near(settings: TraceSettings, plan: FloorPlan) -> Survey:
+    """Return exact readings of the first transmitter on both sides; -90 dBm without a path."""
+    random = np.random.default_rng(4)
+    points = random.uniform((0.3, 0.3, 1.5), (5.7, 3.7, 1.5), (40, 3))
+    empty = survey_of(points, np.zeros(len(points)))
+    exact = traced_dbm(scene_of(plan), empty, settings)
+    return replace(empty, rss_dbm=np.where(np.isfinite(exact), exact, -90.0))
+
+
+def test_an_open_door_is_found_by_readings_that_have_no_path_otherwise() -> None:
+    shut, settings = cut_off(NEAR, FAR)
+    truth = building(FAR)
+    states = states_in(shut, settings, far_and_near(settings, truth))
+    assert states[NEAR].is_open
+    assert states[NEAR].is_told
+    assert not states[FAR].is_open
+
+
+def test_a_shut_door_is_found_by_readings_below_the_sensitivity() -> None:
+    plan, settings = cut_off(FAR)
+    survey = far_and_near(settings, building(NEAR, FAR))
+    survey = replace(survey, is_censored=survey.rss_dbm == -90.0)
+    assert survey.is_censored.any()
+    states = states_in(plan, settings, survey)
+    assert not states[NEAR].is_open
+    assert states[NEAR].is_told
+
+
+def test_a_state_that_the_plan_does_not_allow_is_not_told_by_readings() -> None:
+    state = DoorState(NEAR, (0.0, 0.0), True, True, np.inf)
+    assert not state.is_told
+    assert state.summary()["evidence"] is None
+
+
+def test_a_material_of_a_door_that_is_open_after_all_is_not_fitted() -> None:
+    plan = building(NEAR, FAR)
+    walls = list(plan.walls)
+    leaf = replace(walls[NEAR.wall].openings[0], material="chipboard", thickness_m=0.05)
+    heavy = replace(walls[NEAR.wall], openings=(leaf, walls[NEAR.wall].openings[1]))
+    plan = replace(plan, walls=(*walls[: NEAR.wall], heavy))
+    survey = survey_in(building(FAR))
+    found = calibrate(
+        plan, scene_of(plan), survey, SETTINGS, materials=["concrete", "chipboard"], doors=True
+    )
+    assert {value.material for value in found.found.told} <= {"concrete", "chipboard"}
 
 
 def test_doors_that_the_plan_needs_are_left_alone() -> None:
