@@ -6,7 +6,10 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from hashlib import sha256
 from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any, Literal, cast, get_args
 
 import numpy as np
@@ -87,11 +90,14 @@ class Entrant:
         Track.
     make : callable
         Policy for a building and task, from a `Briefing`.
+    source : str
+        Hash of its program; flights of another program are not resumed.
     """
 
     name: str
     knows: Knows
     make: Callable[[Briefing], Policy]
+    source: str = version("rssnav")
 
 
 class Oracle:
@@ -194,13 +200,16 @@ def entrant_of(text: str, knows: str, name: str | None = None) -> Entrant:
     if "" not in sys.path:
         sys.path.insert(0, "")  # modules of the current folder
     try:
-        make = getattr(import_module(module), function)
+        program = import_module(module)
+        make = getattr(program, function)
     except (ImportError, AttributeError, ValueError) as error:
         raise BenchmarkError(
             f"policy {text!r}: {error}; expected module:function with a function that takes a "
             "Briefing and returns a policy"
         ) from error
-    return Entrant(name or function, track, make)
+    file = getattr(program, "__file__", None)
+    source = sha256(Path(file).read_bytes()).hexdigest() if file else ""
+    return Entrant(name or function, track, make, source)
 
 
 class Guarded:

@@ -25,6 +25,9 @@ _HEAD = (
     "kJ", "turns", "collisions", "µs a step",
 )  # fmt: skip
 
+FEWEST_BUILDINGS = 10
+"""Intervals over fewer buildings are not shown: they are too narrow."""
+
 
 def write(folder: Path, scores: Sequence[Score], extent: Extent) -> list[Path]:
     """Write ``results.json``, ``table.md`` and ``page.html``; return their paths."""
@@ -77,7 +80,14 @@ def words(extent: Extent) -> str:
 def table_rows(scores: Sequence[Score]) -> list[list[str]]:
     """Short rows for a terminal: buildings, task, policy, track, success, SPL."""
     return [
-        [s.site, s.condition, s.entrant, s.knows, f"{s.success.value:.3f}", _interval(s.spl)]
+        [
+            s.site,
+            s.condition,
+            s.entrant,
+            s.knows,
+            f"{s.success.value:.3f}",
+            _interval(s.spl, len(s.spl_by_building)),
+        ]
         for s in scores
     ]
 
@@ -97,7 +107,7 @@ def _words(score: Score) -> list[str]:
         score.entrant,
         score.knows,
         f"{score.success.value:.3f}",
-        _interval(score.spl),
+        _interval(score.spl, len(score.spl_by_building)),
         "-" if score.median_s is None else f"{score.median_s:.0f}",
         ", ".join(f"{part:.2f}" for part in score.found_within[:-1]),
         f"{score.false_alarms.value:.3f}",
@@ -108,12 +118,14 @@ def _words(score: Score) -> list[str]:
     ]
 
 
-def _interval(estimate: Estimate) -> str:
+def _interval(estimate: Estimate, n_buildings: int) -> str:
+    if n_buildings < FEWEST_BUILDINGS:
+        return f"{estimate.value:.3f}"
     return f"{estimate.value:.3f} ({estimate.low:.3f} to {estimate.high:.3f})"
 
 
 def _row(cells: Sequence[str]) -> str:
-    return f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |"
+    return f"| {' | '.join(html.escape(cell.replace('|', '/')) for cell in cells)} |"
 
 
 def _cells(tag: str, cells: Sequence[str]) -> str:

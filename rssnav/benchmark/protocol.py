@@ -118,9 +118,14 @@ class Extent:
     seeds: int = 10
 
     @property
+    def buildings_of(self) -> dict[str, int]:
+        """Number of buildings of each site."""
+        return {self.split: self.generated, "paper": 2 * self.paper, "own": len(self.plans)}
+
+    @property
     def buildings(self) -> int:
         """Number of buildings."""
-        return self.generated + 2 * self.paper + len(self.plans)
+        return sum(self.buildings_of.values())
 
 
 FULL = Extent()

@@ -13,6 +13,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from hashlib import sha256
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from atomicfiles import atomic_write
 from raytrace.threads import n_threads
+from raytrace.trace import TRACER_VERSION
 from rssnav.benchmark.buildings import Building, Site, generated, own, paper
 from rssnav.benchmark.entrants import Briefing, Entrant, Guarded
 from rssnav.benchmark.protocol import (
@@ -51,9 +53,9 @@ class Record:
         Its name.
     found, false_alarm : list of bool
         As of `rssnav.missions.Flights`.
-    steps, moves, shortest, turns : list of int
-        Seconds flown, steps that led to another cell, fewest of them that were possible, changes of
-        direction.
+    steps, actions, shortest, turns : list of int
+        Seconds flown, steps and hovering that the policy chose, fewest steps that were possible,
+        changes of direction.
     energy_kj : list of float
         Energy [kJ].
     collisions : int
@@ -70,7 +72,7 @@ class Record:
     found: list[bool]
     false_alarm: list[bool]
     steps: list[int]
-    moves: list[int]
+    actions: list[int]
     shortest: list[int]
     turns: list[int]
     energy_kj: list[float]
@@ -189,9 +191,10 @@ def fly_in(
         path = folder / "flights" / f"{building.name}-{_file_name(entrant)}.json"
         key = {
             "version": BENCHMARK_VERSION,
+            "tracer": TRACER_VERSION,
             "building": building.fingerprint,
             "seeds": extent.seeds,
-            "entrant": [entrant.name, entrant.knows],
+            "entrant": [entrant.name, entrant.knows, entrant.source],
         }
         flown = _load(path, key) if resume else None
         if flown is None:
@@ -199,25 +202,33 @@ def fly_in(
             flown = [
                 _record(entrant, condition, building, mission, extent) for condition in CONDITIONS
             ]
+            rows = [asdict(record) for record in flown]
             with atomic_write(path) as temporary:
-                temporary.write_text(json.dumps({**key, "records": [asdict(r) for r in flown]}))
+                temporary.write_text(json.dumps({**key, "sha256": _hash(rows), "records": rows}))
         records += flown
     return records
 
 
 def _file_name(entrant: Entrant) -> str:
-    return re.sub(r"[^a-z0-9]+", "-", f"{entrant.knows} {entrant.name}".lower()).strip("-")
+    name = f"{entrant.knows} {entrant.name}"
+    readable = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
+    return f"{readable}-{sha256(name.encode()).hexdigest()[:8]}"
 
 
 def _load(path: Path, key: dict[str, Any]) -> list[Record] | None:
-    """Records of a file made by the same protocol; None without one."""
+    """Records of a file of the same protocol and tracer; None without one, or a damaged one."""
     try:
         content = json.loads(path.read_text())
-        if any(content[name] != value for name, value in key.items()):
+        expected = {**key, "sha256": _hash(content["records"])}
+        if any(content[name] != value for name, value in expected.items()):
             return None
         return [Record(**record) for record in content["records"]]
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
+
+
+def _hash(rows: object) -> str:
+    return sha256(json.dumps(rows).encode()).hexdigest()
 
 
 def _record(
@@ -248,7 +259,7 @@ def _record(
         found=_all(flown, lambda f: f.found),
         false_alarm=_all(flown, lambda f: f.false_alarm),
         steps=_all(flown, lambda f: f.steps),
-        moves=_all(flown, lambda f: f.moves),
+        actions=_all(flown, lambda f: f.actions),
         shortest=_all(flown, lambda f: shortest(f, hops)),
         turns=_all(flown, lambda f: f.turns),
         energy_kj=_all(flown, lambda f: np.round(f.energy_kj, 3)),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rssnav.benchmark.running import Record
 from rssnav.experiments.statistics import Estimate, mean
+from rssnav.missions.flights import weighted_by_length
 
 WITHIN_S = (25, 50, 100, 200, 400)
 """Times at which the distribution of the time to find is given [s]."""
@@ -71,10 +72,10 @@ def scores(records: Sequence[Record]) -> list[Score]:
 def spl(record: Record) -> float:
     """Success weighted by path length (Anderson et al. 2018, arXiv:1807.06757).
 
-    Lengths count steps that lead to another cell: readings in place cost time, not length.
+    Lengths count actions: readings that confirm cost time, not length.
     """
-    least, flown = np.asarray(record.shortest), np.asarray(record.moves)
-    return float(np.mean(np.asarray(record.found) * least / np.maximum(least, flown)))
+    lists = (record.found, record.shortest, record.actions)
+    return weighted_by_length(*map(np.asarray, lists))
 
 
 def _score(group: list[Record]) -> Score:

@@ -5,17 +5,19 @@ from __future__ import annotations
 import json
 import math
 import platform
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, fields
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, get_args
+from reprlib import repr as shown
+from typing import Any, cast, get_args
 
 from raytrace.trace import TRACER_VERSION
 from rssnav.benchmark.buildings import Site
 from rssnav.benchmark.entrants import Knows
 from rssnav.benchmark.errors import BenchmarkError
-from rssnav.benchmark.protocol import BENCHMARK_VERSION, CONDITIONS, Extent
+from rssnav.benchmark.protocol import BENCHMARK_VERSION, CONDITIONS, Extent, flights_of_a_seed
 from rssnav.benchmark.scores import WITHIN_S, Score
 from rssnav.experiments.statistics import Estimate
 
@@ -43,11 +45,13 @@ def read_scores(path: Path, extent: Extent) -> list[Score]:
         With the file, the entry and what is expected, unless it holds such results.
     """
     try:
-        content = json.loads(path.read_text())
+        content = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise BenchmarkError(f"{path}: {error.strerror}") from error
     except ValueError as error:
         raise BenchmarkError(f"{path}: {error}") from error
+    except RecursionError as error:
+        raise BenchmarkError(f"{path}: lists or tables are nested too deeply") from error
     if not isinstance(content, dict) or content.get("benchmark") != "rssnav":
         raise BenchmarkError(f"{path}: not a results.json of rssnav benchmark")
     for key, expected in (
@@ -56,13 +60,26 @@ def read_scores(path: Path, extent: Extent) -> list[Score]:
     ):
         if content.get(key) != expected:
             raise BenchmarkError(
-                f"{path}: {key}: {content.get(key)!r}; only results with {expected!r} compare with "
-                "these"
+                f"{path}: {key}: {shown(content.get(key))}; only results with {expected!r} compare "
+                "with these"
             )
     rows = content.get("scores")
     if not isinstance(rows, list) or not rows:
         raise BenchmarkError(f"{path}: scores: expected a list with at least one entry")
-    return [_score(row, f"{path}: scores[{k}]") for k, row in enumerate(rows)]
+    found = [_score(row, f"{path}: scores[{k}]", extent) for k, row in enumerate(rows)]
+    _check_whole(found, extent, path)
+    return found
+
+
+def _check_whole(found: Sequence[Score], extent: Extent, path: Path) -> None:
+    """Check that every policy flew in all tasks and sites."""
+    tasks, sites = len(CONDITIONS), sum(n > 0 for n in extent.buildings_of.values())
+    for (name, knows), count in Counter((s.entrant, s.knows) for s in found).items():
+        if count != tasks * sites:
+            raise BenchmarkError(
+                f"{path}: scores: {name!r} of track {knows!r} has {count} entries; expected "
+                f"{tasks * sites}, one for each of {tasks} tasks and {sites} kinds of buildings"
+            )
 
 
 def merged(parts: Sequence[Sequence[Score]]) -> list[Score]:
@@ -85,29 +102,33 @@ def merged(parts: Sequence[Sequence[Score]]) -> list[Score]:
     return list(found.values())
 
 
-def _score(row: Any, where: str) -> Score:
+def _score(row: Any, where: str, extent: Extent) -> Score:
     if not isinstance(row, dict):
-        raise BenchmarkError(f"{where}: expected a table, got {row!r}")
+        raise BenchmarkError(f"{where}: expected a table, got {shown(row)}")
     names = [field.name for field in fields(Score)]
     for name in names:
         if name not in row:
             raise BenchmarkError(f"{where}: {name} is missing")
         holds, expected = _EXPECTED[name]
         if not holds(row[name]):
-            raise BenchmarkError(f"{where}: {name}: {row[name]!r}; expected {expected}")
+            raise BenchmarkError(f"{where}: {name}: {shown(row[name])}; expected {expected}")
     if unknown := sorted(set(row) - set(names)):
         raise BenchmarkError(f"{where}: {unknown[0]}: no such key; there are {', '.join(names)}")
     for name in ("spl", "success", "false_alarms"):
         row = {**row, name: Estimate(**row[name])}
     score = Score(**row)
-    _check_together(score, where)
+    _check_together(score, where, extent)
     return score
 
 
-def _check_together(score: Score, where: str) -> None:
+def _check_together(score: Score, where: str, extent: Extent) -> None:
     """Check what must hold between the numbers of an entry."""
-    by_building = score.spl_by_building
+    by_building, n = score.spl_by_building, extent.buildings_of.get(score.site, 0)
+    flights = n * extent.seeds * flights_of_a_seed(cast(Site, score.site))
     for holds, expected in (
+        (n > 0, "site: one of this extent"),
+        (len(by_building) == n, f"spl_by_building: {n} numbers"),
+        (score.flights == flights, f"flights: {flights}"),
         (abs(sum(by_building) / len(by_building) - score.spl.value) < 1e-3, "spl: the mean of "
          "spl_by_building"),
         (score.spl.value <= score.success.value + 1e-3, "spl: at most success"),
@@ -127,8 +148,8 @@ def _number(low: float, high: float) -> Callable[[Any], bool]:
         return (
             isinstance(value, int | float)
             and not isinstance(value, bool)
-            and math.isfinite(value)
             and low <= value <= high
+            and math.isfinite(value)
         )
 
     return holds

@@ -63,22 +63,28 @@ class Flights:
     modes: tuple[NDArray[np.int32], ...]
 
     @property
-    def moves(self) -> NDArray[np.int64]:
-        """Steps that led to another cell (N,): all but hovering and further readings."""
-        return np.array([np.count_nonzero(np.diff(c)) for c in self.cells], dtype=np.int64)
+    def actions(self) -> NDArray[np.int64]:
+        """Steps and hovering that the policy chose (N,): all but the readings that confirm."""
+        return np.array([len(cells) - 1 for cells in self.cells], dtype=np.int64)
 
     def spl(self, shortest: NDArray[np.float64]) -> float:
         """Success weighted by path length (Anderson et al. 2018, arXiv:1807.06757).
 
-        Lengths are counted in steps that lead to another cell, so readings that confirm the goal
-        add nothing.
+        Lengths are counted in actions, so readings that confirm the goal add nothing.
 
         Parameters
         ----------
         shortest : (N,) float64
             Fewest steps that each flight could have taken.
         """
-        return float(np.mean(self.found * shortest / np.maximum(shortest, self.moves)))
+        return weighted_by_length(self.found, shortest, self.actions)
+
+
+def weighted_by_length(
+    found: NDArray[np.bool_], shortest: NDArray[np.float64], flown: NDArray[np.int64]
+) -> float:
+    """Success weighted by path length, see `Flights.spl`, of N flights."""
+    return float(np.mean(found * shortest / np.maximum(shortest, flown)))
 
 
 class Flyer:

@@ -108,7 +108,7 @@ def confirmation() -> None:
             f"{np.median(below_db) if below_db else 0:.1f} dB below the level, found "
             f"{np.mean([f.found for _, f in flown]):.3f} after "
             f"{np.mean([f.steps.mean() for _, f in flown]):.0f} s, "
-            f"{np.mean([(f.steps - f.moves).mean() for _, f in flown]):.0f} of them in place"
+            f"{np.mean([(f.steps - f.actions).mean() for _, f in flown]):.0f} of them in place"
         )
 
 

@@ -20,6 +20,7 @@ import dxf_drawings
 import ifc_models
 import small_plans
 import small_worlds
+from benchmark_records import SMALL, records
 from small_datasets import SPEC
 
 import floorplans
@@ -35,6 +36,8 @@ from raytrace import (
     compute_radio_map,
 )
 from rssnav import LocationAgent, RssAgent, train
+from rssnav.benchmark.scores import scores
+from rssnav.benchmark.submissions import as_json
 from rssnav.datasets.spec import read_spec
 from rssnav.datasets.tracing import Limits
 from rssnav.datasets.work import make_plan
@@ -234,6 +237,12 @@ def survey_text() -> str:
     ]
     heading = "tx,x,y,z,rss_dbm,n,std_db,frequency_hz,device,below_sensitivity"
     return "\n".join([heading, *rows, ""])
+
+
+@cache
+def benchmark_results() -> Any:
+    """Return results of two flights of the benchmark, as its JSON file holds them."""
+    return json.loads(as_json(scores(records()), SMALL))
 
 
 def transmitters_text() -> str:

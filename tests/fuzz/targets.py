@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from benchmark_records import SMALL
 from hypothesis import strategies as st
 from small_datasets import SPEC
 
@@ -33,6 +34,9 @@ from raytrace import (
     TransmitterMaps,
 )
 from rssnav import ResultFileError, TrainingResult
+from rssnav.benchmark.errors import BenchmarkError
+from rssnav.benchmark.page import as_markdown, as_page
+from rssnav.benchmark.submissions import merged, read_scores
 from rssnav.datasets.container import read_plan_file
 from rssnav.datasets.errors import DatasetError
 from rssnav.datasets.spec import load_spec
@@ -189,6 +193,18 @@ def _results() -> st.SearchStrategy[bytes]:
     )
 
 
+def _scores() -> st.SearchStrategy[bytes]:
+    trees = mutated_tree(samples.benchmark_results()).map(json_text)
+    return st.one_of(trees, trees, mutated_bytes(json_text(samples.benchmark_results())))
+
+
+def _run_scores(path: Path) -> None:
+    """Read results of the benchmark, and write the tables that hold them."""
+    scores = merged([read_scores(path, SMALL)])
+    assert "<script" not in as_page(scores, SMALL)
+    assert as_markdown(scores)
+
+
 TARGETS = {
     "plan": Target(_plans, _run_plan, (PlanError, SceneError), ".toml", by_lines=True),
     "repair": Target(_plans, _run_repair, (PlanError,), ".toml", by_lines=True),
@@ -219,6 +235,7 @@ TARGETS = {
         _texts(lambda: samples.survey_text().encode()), _run_survey, (SurveyError,), ".csv",
         by_lines=True
     ),
+    "benchmark": Target(_scores, _run_scores, (BenchmarkError,), ".json"),
     "options": Target(commands.cases, commands.run, (), ".txt", by_lines=True),
     "library": Target(
         calls.cases, calls.run,

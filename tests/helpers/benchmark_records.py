@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from rssnav.benchmark.protocol import CONDITIONS, Extent
 from rssnav.benchmark.running import Record
+
+SMALL = Extent(generated=2, paper=False, seeds=1)
+"""Of two buildings with three flights in each task."""
 
 
 def record(**changes) -> Record:
@@ -11,10 +15,22 @@ def record(**changes) -> Record:
         "found": [True, True, False],
         "false_alarm": [False, False, True],
         "steps": [10, 30, 50],
-        "moves": [10, 25, 50],
+        "actions": [10, 25, 50],
         "shortest": [10, 20, 12],
         "turns": [1, 2, 3],
         "energy_kj": [1.0, 2.0, 6.0],
     }
     who = {"entrant": "a", "knows": "RSS", "condition": "2 dB", "site": "test", "building": "b"}
     return Record(**{**who, **flights, "collisions": 4, "cpu_s": 0.009, **changes})
+
+
+def records() -> list[Record]:
+    """Flights in all tasks and both buildings of `SMALL`."""
+    return [
+        made
+        for task in CONDITIONS
+        for made in (
+            record(condition=task.name),
+            record(condition=task.name, building="c", steps=[300, 30, 40]),
+        )
+    ]

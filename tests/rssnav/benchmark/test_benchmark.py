@@ -99,7 +99,7 @@ def test_no_flight_beats_the_clairvoyant(mission, building, name):
         policy = entrant.make(Briefing(CONDITION[name], entrant.knows, building, mission))
         sight = CONDITION[name].observation(world_seen=entrant.knows == "world")
         flights = fly(world, task, sight, policy, episodes=20)
-        assert np.all(shortest(flights, hops)[flights.found] <= flights.moves[flights.found])
+        assert np.all(shortest(flights, hops)[flights.found] <= flights.actions[flights.found])
 
 
 def test_oracles_have_an_spl_of_one_and_the_least_energy(folder):
@@ -115,8 +115,8 @@ def test_oracles_have_an_spl_of_one_and_the_least_energy(folder):
         assert np.all(least <= others + 1e-9)
     noisy = by_name["oracle, fewest steps", "4 dB"]
     assert all(noisy.found)
-    assert all(s >= m for s, m in zip(noisy.steps, noisy.moves, strict=True))
-    assert sum(noisy.steps) > sum(noisy.moves)  # readings in place cost time, not length
+    assert all(s >= m for s, m in zip(noisy.steps, noisy.actions, strict=True))
+    assert sum(noisy.steps) > sum(noisy.actions)  # readings in place cost time, not length
 
 
 def test_flights_begin_far_from_all_places(mission):
@@ -166,7 +166,7 @@ def test_impossible_actions_are_counted_and_become_hovering():
     sight = CONDITION["static"].observation()
     flights = fly(mission, Task(GOAL, "none", max_steps=30), sight, policy, episodes=1)
     assert flights.steps[0] == 30
-    assert policy.collisions == 30 - flights.moves[0]
+    assert policy.collisions == 30 - np.count_nonzero(np.diff(flights.cells[0]))
     assert Guarded(Stubborn()).act(None, np.ones(8, dtype=bool)) == 0
     assert policy.act(None, np.zeros(8, dtype=bool)) == HOVER
 
@@ -202,12 +202,15 @@ def test_a_damaged_file_of_flights_is_flown_again(folder):
     before = run([EAST], SMALL, folder, threads=1)
     (file,) = (folder / "flights").iterdir()
     whole = json.loads(file.read_text())
+    other = [{**whole["records"][0], "steps": "many"}, *whole["records"][1:]]
     for damage in (
         "",
         "{",
+        "[" * 100_000,
         '{"version": 1, "records": 3}',
         "\x00",
         json.dumps({**whole, "seeds": 9}),
+        json.dumps({**whole, "records": other}),
     ):
         file.write_text(damage)
         after = run([EAST], SMALL, folder, threads=1)

@@ -6,26 +6,26 @@ import json
 from dataclasses import replace
 
 import pytest
-from benchmark_records import record
+from benchmark_records import SMALL, records
 
 from rssnav.benchmark.errors import BenchmarkError
 from rssnav.benchmark.page import as_markdown, as_page, write
-from rssnav.benchmark.protocol import FULL, QUICK
+from rssnav.benchmark.protocol import QUICK
 from rssnav.benchmark.scores import scores
 from rssnav.benchmark.submissions import as_json, merged, read_scores
 
 
 @pytest.fixture
 def file(tmp_path):
-    found = scores([record(), record(building="c", steps=[300, 30, 40])])
+    found = scores(records())
     path = tmp_path / "results.json"
-    path.write_text(as_json(found, FULL))
+    path.write_text(as_json(found, SMALL))
     return path, found
 
 
 def test_results_are_read_as_written(file):
     path, found = file
-    assert read_scores(path, FULL) == found
+    assert read_scores(path, SMALL) == found
 
 
 def changed(path, change):
@@ -55,6 +55,11 @@ DAMAGE = {
     "nan": (of_score("energy_kj", float("nan")), "energy_kj: nan"),
     "negative": (of_score("flights", -3), "flights: -3"),
     "beyond one": (of_score("spl", {"value": 1.2, "low": 0.0, "high": 1.3}), "spl: "),
+    "a building left out": (of_score("spl_by_building", [0.5]), "spl_by_building: 2 numbers"),
+    "flights left out": (of_score("flights", 3), "flights: 6"),
+    "a site left out": (of_score("site", "paper"), "site: one of this extent"),
+    "a task left out": (lambda c: c["scores"].pop(), "has 4 entries; expected 5"),
+    "huge": (of_score("turns", 10**400), "turns: 1000"),
     "wrong interval": (of_score("spl", {"value": 0.1, "low": 0.2, "high": 0.3}), "low <= value"),
     "wrong mean": (of_score("spl", {"value": 0.1, "low": 0.0, "high": 0.3}), "the mean of"),
     "no buildings": (of_score("spl_by_building", []), "spl_by_building"),
@@ -69,18 +74,25 @@ def test_what_is_wrong_is_named_with_the_file(file, change, message):
     path, _ = file
     changed(path, change)
     with pytest.raises(BenchmarkError, match=message) as error:
-        read_scores(path, FULL)
+        read_scores(path, SMALL)
     assert str(path) in str(error.value)
 
 
-@pytest.mark.parametrize("text", ["", "[]", "3", "{", "\x00", '{"benchmark": "rssnav"}'])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "", "[]", "3", "{", "\x00", '{"benchmark": "rssnav"}', "[" * 100_000,
+        '{"benchmark": "rssnav", "version": ' + "9" * 4000 + "}",
+    ],
+    ids=["empty", "list", "number", "open", "zero", "nothing else", "deep", "long number"],
+)  # fmt: skip
 def test_no_result_is_refused(tmp_path, text):
     path = tmp_path / "results.json"
     path.write_text(text)
     with pytest.raises(BenchmarkError, match=r"results\.json"):
-        read_scores(path, FULL)
+        read_scores(path, SMALL)
     with pytest.raises(BenchmarkError, match=r"missing\.json"):
-        read_scores(tmp_path / "missing.json", FULL)
+        read_scores(tmp_path / "missing.json", SMALL)
 
 
 def test_a_quick_result_is_not_mixed_with_a_full_one(file):
@@ -100,11 +112,11 @@ def test_tables_hold_all_entrants_best_first_and_names_are_escaped(file, tmp_pat
     _, found = file
     best = replace(found[0], entrant="<b>|best", spl=replace(found[0].spl, value=0.9, high=0.9))
     rows = [line for line in as_markdown([*found, best]).splitlines() if line.startswith("| ")]
-    assert [row.count("|") for row in rows] == [rows[0].count("|")] * 4
-    assert rows[2].startswith("| <b>/best |")
-    page = as_page([*found, best], FULL)
+    assert [row.count("|") for row in rows] == [rows[0].count("|")] * len(rows)
+    assert rows[2].startswith("| &lt;b&gt;/best |")
+    page = as_page([*found, best], SMALL)
     assert "<b>|best" not in page
     assert "&lt;b&gt;|best" in page
-    paths = write(tmp_path, found, FULL)
+    paths = write(tmp_path, found, SMALL)
     assert {path.name for path in paths} == {"results.json", "table.md", "page.html"}
-    assert read_scores(tmp_path / "results.json", FULL) == found
+    assert read_scores(tmp_path / "results.json", SMALL) == found
