@@ -75,8 +75,15 @@ JOBS = {
     "noise": Job(("experiments", "noise", *_STUDY), ("maps",), kills=6),
     "sensitivity": Job(("experiments", "sensitivity", *_STUDY), ("maps",), kills=6),
     "comparison": Job(("experiments", "comparison", *_STUDY), ("maps",), kills=6),
+    "benchmark": Job(
+        (
+            "benchmark", "--split", "train", "--buildings", "1", "--seeds", "1", "--track", "RSS",
+            "--threads", "1", "--out", "results/benchmark",
+        ),
+        kills=6,
+    ),
     "report": Job(("report", "--out", "results", "--threads", "1"), ("experiments",), kills=6),
-}
+}  # fmt: skip
 """By name; the first ones take seconds, the last ones minutes."""
 
 FAST = tuple(name for name in JOBS if "results" not in " ".join(JOBS[name].arguments))
