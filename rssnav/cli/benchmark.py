@@ -58,7 +58,9 @@ def run_benchmark(
     ] = "test",
     buildings: Annotated[
         int | None,
-        typer.Option(metavar="N", min=0, help="Number of generated buildings.", show_default="50"),
+        typer.Option(
+            metavar="N", min=0, max=200, help="Number of generated buildings.", show_default="50"
+        ),
     ] = None,
     seeds: Annotated[
         int | None,

@@ -119,7 +119,8 @@ def test_a_goal_that_no_cell_reaches_is_told(traced: TracedMap) -> None:
 def test_gaussian_processes_of_too_many_cells_are_refused(
     traced: TracedMap, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("rssnav.explorer.searching.MOST_GAUSSIAN_CELLS", 50)
+    its_module: dict = SEARCHERS["Gaussian process"].__globals__
+    monkeypatch.setitem(its_module, "MOST_GAUSSIAN_CELLS", 50)
     search = flown(traced, SearchSettings(("Gaussian process", "Frontier"), GOAL_DBM))
     assert "the map has 108 cells" in search.problem
 
