@@ -11,7 +11,7 @@ KILLS ?= 200
 PEERS ?= .venv-peers
 
 .DEFAULT_GOAL := help
-.PHONY: help install maps experiments test test-lowest lint types contracts fuzz torture bench bench-peers bench-growth bench-evaluation bench-fields bench-loss docs dist clean
+.PHONY: help install maps experiments test test-lowest lint types contracts fuzz torture bench bench-peers bench-growth bench-evaluation bench-fields bench-loss bench-policies docs dist clean
 
 help: ## list these targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
