@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 import floorplans
-from raytrace import RadioMap
+from raytrace import RadioMap, TransmitterMaps
 from raytrace.results.map_file import is_radio_map
 from rssnav import TrainingResult
 from rssnav.datasets.container import read_plan_file
@@ -62,6 +62,8 @@ def _read(path: Path) -> None:
             load_spec(path)
         case ".h5" if "-search-" in path.name:
             read_search(path)
+        case ".h5" if path.parent.parent.name == "benchmark":
+            TransmitterMaps.load(path)
         case ".h5":
             (RadioMap if is_radio_map(path) else TrainingResult).load(path)
         case ".png" | ".gif":
