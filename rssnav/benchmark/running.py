@@ -113,7 +113,7 @@ def run(
     records: dict[str, list[Record]] = {}
     shown = show or _show_nothing
     shown("buildings", 0, total)
-    if count == 1:
+    if count == 1 or multiprocessing.current_process().daemon:  # these may not have processes
         for building in buildings(extent):
             records[building.name] = fly_in(building, entrants, extent, folder, resume)
             shown("buildings", len(records), total)

@@ -27,8 +27,11 @@ _TAIL_BYTES = 4096
 _HEAD_BYTES = 1 << 20
 _COMMENT = rb"(?>/\*.*?(?:\*/|\Z))"  # atomic and possessive: no backtracking in hostile headers
 _SPACE = rb"(?:\s|" + _COMMENT + rb")*+"
+_NAME = rb"'[^']*+'" + _SPACE
+_LIST = _NAME + rb"(?:," + _SPACE + _NAME + rb")*+"
+_NAMES = _SPACE.join((b"", rb"\(", rb"\(", _LIST + rb"\)", rb"\)", b";"))
 _SCHEMA = re.compile(  # outside comments and strings
-    _COMMENT + rb"|'[^']*(?:'|\Z)|FILE_SCHEMA(?:" + rb"\(".join([_SPACE] * 3) + rb"')?",
+    _COMMENT + rb"|'[^']*(?:'|\Z)|FILE_SCHEMA(?:" + _NAMES + rb")?",
     re.DOTALL,
 )
 _PIECE_BYTES = 1 << 20
@@ -83,9 +86,9 @@ def _parse(path: Path) -> Model:
 
 
 def _check_schema(head: bytes) -> None:
-    """Check that the header names a schema: ifcopenshell crashes where something else is there."""
+    """Check that the header names schemas: ifcopenshell crashes where something else is there."""
     found = (match[0] for match in _SCHEMA.finditer(head) if match[0].startswith(b"FILE_SCHEMA"))
-    if not next(found, b"").endswith(b"'"):
+    if not next(found, b"").endswith(b";"):
         raise PlanError(
             "not a readable IFC model: expected FILE_SCHEMA with a name in its header, such as "
             "FILE_SCHEMA(('IFC4'))"

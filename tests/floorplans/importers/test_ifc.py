@@ -464,7 +464,8 @@ def test_mutated_models_never_crash(tmp_path, house_file) -> None:
         "FILE_SCHEMA((1e308));", "FILE_SCHEMA();", "FILE_SCHEMA('IFC4');", "FILE_SCHEMA((#1));", "",
         "FILE_SCHEMA((('IFC4')));", "FILE_SCHEMA((1));FILE_SCHEMA(('IFC4'));", "FILE_SCHEMA(/*",
         "/*FILE_SCHEMA(('IFC4'))*/FILE_SCHEMA(($));", "FILE_SCHEMA" + "/**/" * 9999, "/*" * 99999,
-        "FILE_NAME('FILE_SCHEMA((''IFC4''))');FILE_SCHEMA((.T.));",
+        "FILE_NAME('FILE_SCHEMA((''IFC4''))');FILE_SCHEMA((.T.));", "FILE_SCHEMA(('IFC4')0);",
+        "FILE_SCHEMA(('IFC4',0));", "FILE_SCHEMA(('IFC4'",
     ],
 )  # fmt: skip
 def test_a_header_without_the_name_of_a_schema_is_refused(house_file, tmp_path, schema) -> None:
