@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import logging
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from threading import Event, Thread
 from typing import Any
 
 import numpy as np
@@ -16,7 +14,8 @@ from raytrace import RadioMap
 from raytrace.constants import SPEED_OF_LIGHT
 from rssnav.discrete_states import Fluctuation
 from rssnav.explorer.background import SupersededError
-from rssnav.explorer.fair_turns import FairTurns, TabTurns
+from rssnav.explorer.fair_turns import TabTurns
+from rssnav.explorer.live_work import LiveWork
 from rssnav.explorer.tracing import TracedMap
 from rssnav.kernels import stepping
 from rssnav.missions import Layout, Observation, Policy, RandomPolicy, ReadingAbove, Task
@@ -24,9 +23,7 @@ from rssnav.missions.flights import Flyer
 from rssnav.optimal_flights import shortest_path
 from rssnav.policies import DistanceSearch, FrontierSearch, GaussianProcessSearch
 from rssnav.training import generator_states
-from rssnav.world import GridWorld, WorldError
-
-LOGGER = logging.getLogger(__name__)
+from rssnav.world import GridWorld
 
 MAX_STEPS = 2000
 MOST_GAUSSIAN_CELLS = 1000
@@ -146,7 +143,7 @@ class SearchFlight:
         return self.beliefs[min(step // self.every, len(self.beliefs) - 1)]
 
 
-class LiveSearch:
+class LiveSearch(LiveWork):
     """Two flights in a worker thread that can be watched and stopped.
 
     Both have the same random numbers of the world, and take turns step by step.
@@ -164,54 +161,28 @@ class LiveSearch:
     flights : (SearchFlight, SearchFlight)
     shortest_steps : int or None
         Fewest steps to the goal; None until known.
-    problem : str
-        Why it failed; empty if it did not.
     """
 
     def __init__(
         self, traced: TracedMap, settings: SearchSettings, turns: TabTurns | None = None
     ) -> None:
+        super().__init__("search", turns)
         self.traced, self.settings = traced, settings
         self.flights = tuple(SearchFlight(name) for name in settings.searchers)
         self.shortest_steps: int | None = None
-        self.problem = ""
-        self._stop = Event()
-        self._turns = turns or TabTurns(FairTurns(1))
-        self._thread = Thread(target=self._run, name="search", daemon=True)
-
-    def start(self) -> None:
-        """Start the flights."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """Ask them to stop; what was flown stays."""
-        self._stop.set()
-
-    def join(self, timeout_s: float | None = None) -> None:
-        """Wait until both have ended."""
-        self._thread.join(timeout_s)
-
-    @property
-    def running(self) -> bool:
-        """Whether they still fly."""
-        return self._thread.is_alive()
 
     @property
     def steps(self) -> int:
         """Steps of the longer flight so far."""
         return max(flight.steps for flight in self.flights)
 
-    def _run(self) -> None:
+    def _work(self) -> None:
         try:
             self._fly()
         except SupersededError:
             for flight in self.flights:
                 flight.end = flight.end or "stopped"
-        except (WorldError, ValueError) as error:
-            self.problem = str(error)
-        except Exception:
-            LOGGER.exception("the search failed")
-            self.problem = "the search failed; see the server's log"
+            raise
 
     def _fly(self) -> None:
         settings, radio_map = self.settings, self.traced.radio_map
@@ -260,8 +231,3 @@ class LiveSearch:
         flight.end = "time is over"
         if status == stepping.FOUND:
             flight.end = "found" if here else "false alarm"
-
-    def _check(self) -> None:
-        """Raise `SupersededError` if asked to stop."""
-        if self._stop.is_set():
-            raise SupersededError

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import logging
 import math
 import time
 from dataclasses import dataclass, field
-from threading import Event, Thread
 from typing import Literal, get_args
 
 import numpy as np
@@ -16,17 +14,15 @@ from raytrace import RadioMap
 from rssnav.agents import Agent, LocationAgent, RssAgent
 from rssnav.decision_process import DecisionProcess
 from rssnav.discrete_states import ExactStates, ToleranceStates
-from rssnav.explorer.background import SupersededError
-from rssnav.explorer.fair_turns import FairTurns, TabTurns
+from rssnav.explorer.fair_turns import TabTurns
+from rssnav.explorer.live_work import LiveWork
 from rssnav.explorer.tracing import TracedMap
 from rssnav.kernels import common
 from rssnav.learning_parameters import QLearning
 from rssnav.learning_rules import Learner, LearningProblem
 from rssnav.optimal_flights import greedy_path, shortest_path
 from rssnav.training import generator_states
-from rssnav.world import GridWorld, WorldError
-
-LOGGER = logging.getLogger(__name__)
+from rssnav.world import GridWorld
 
 KEPT_FLIGHTS = 200
 MAX_EPISODES = 20_000
@@ -126,7 +122,7 @@ def kept_episodes(episodes: int, kept: int = KEPT_FLIGHTS) -> NDArray[np.int64]:
     return np.unique(np.geomspace(1, episodes, kept).round().astype(np.int64))
 
 
-class LiveTraining:
+class LiveTraining(LiveWork):
     """A training in a worker thread that can be watched and stopped.
 
     Parameters
@@ -145,59 +141,26 @@ class LiveTraining:
         Fewest steps to the goal; None until known.
     converged_episode : int or None
         Episode of convergence (third equal flight in a row); None before.
-    problem : str
-        Why it failed; empty if it did not.
     """
 
     def __init__(
         self, traced: TracedMap, settings: TrainingSettings, turns: TabTurns | None = None
     ) -> None:
+        super().__init__("training", turns)
         self.traced, self.settings = traced, settings
         self.flights: list[Flight] = []
         self.shortest_steps: int | None = None
         self.converged_episode: int | None = None
-        self.problem = ""
         self._steps = np.empty(settings.episodes, dtype=np.int32)
         self._n_flown = 0
         self._begin_s = 0.0
-        self._stop = Event()
-        self._turns = turns or TabTurns(FairTurns(1))
-        self._thread = Thread(target=self._run, name="training", daemon=True)
-
-    def start(self) -> None:
-        """Start the training."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """Ask it to stop; its results so far stay."""
-        self._stop.set()
-
-    def join(self, timeout_s: float | None = None) -> None:
-        """Wait until it ends."""
-        self._thread.join(timeout_s)
-
-    @property
-    def running(self) -> bool:
-        """Whether it is still running."""
-        return self._thread.is_alive()
 
     @property
     def steps(self) -> NDArray[np.int32]:
         """Steps of each episode flown so far, (n,)."""
         return self._steps[: self._n_flown]
 
-    def _run(self) -> None:
-        try:
-            self._learn()
-        except SupersededError:
-            return
-        except (WorldError, ValueError) as error:
-            self.problem = str(error)
-        except Exception:
-            LOGGER.exception("the training failed")
-            self.problem = "the training failed; see the server's log"
-
-    def _learn(self) -> None:
+    def _work(self) -> None:
         settings = self.settings
         with self._turns.turn(self._check):
             world = GridWorld.from_map(self.traced.plan, self.traced.radio_map, settings.speed)
@@ -226,11 +189,6 @@ class LiveTraining:
             if counters[common.CONVERGED_EPISODE] >= 0:
                 self.converged_episode = int(counters[common.CONVERGED_EPISODE])
             self._stop.wait(now / pace - (time.monotonic() - self._begin_s))
-
-    def _check(self) -> None:
-        """Raise `SupersededError` if asked to stop."""
-        if self._stop.is_set():
-            raise SupersededError
 
 
 def _latest_flight(learner: Learner, process: DecisionProcess, world: GridWorld) -> Flight:
