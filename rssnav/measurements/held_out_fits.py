@@ -87,7 +87,9 @@ class Work(NamedTuple):
 
     def fitted(self, fit: Bools) -> Calibrated:
         """Calibrate with some of the readings, from the plan's values on."""
-        traced, at_plan = self.base(fit)
+        return self._fitted(*self.base(fit), fit)
+
+    def _fitted(self, traced: TracedSurvey, at_plan: Levels, fit: Bools) -> Calibrated:
         return fit_what_is_told(traced.rows(fit), self.of, self.groups[fit], at_plan.rows(fit))
 
     def predicted(self, fit: Bools) -> tuple[Floats, Floats]:
@@ -95,7 +97,8 @@ class Work(NamedTuple):
 
         The offset is fitted to the same readings.
         """
-        found, (traced, _) = self.fitted(fit), self.base(fit)
+        traced, at_plan = self.base(fit)
+        found = self._fitted(traced, at_plan, fit)
         after = traced.levels_db(found.told, found.fit.values, slopes=False)
         return self._with_offset(self._before(), fit), self._with_offset(after, fit)
 
