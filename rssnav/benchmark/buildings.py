@@ -15,17 +15,16 @@ from numpy.typing import NDArray
 
 import floorplans
 from floorplans import FloorPlan
-from raytrace import Grid, TraceConfig, Transmitter
+from raytrace import Grid, TraceConfig
 from rssnav.arguments import require
 from rssnav.benchmark.frozen import FINGERPRINTS, Split
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
 from rssnav.missions import Layout, Mission, ReadingAbove, Task, spread_places
 from rssnav.missions.layout import WorldError
-from rssnav.missions.places import mission_of_fields, reachable_layout
+from rssnav.missions.places import fields_of_places, mission_of_fields, reachable_layout
 from rssnav.policies import Hypotheses
 from rssnav.policies.hypotheses import COARSE, NO_WAY
 from rssnav.presets import PRESETS, PresetName
-from rssnav.transmitter_maps import make_transmitter_maps
 
 Site = Literal["train", "validation", "test", "paper", "own"]
 """Where a building comes from."""
@@ -108,19 +107,15 @@ class Building:
         if one is given.
         """
         preset = PRESETS[self.preset]
-        senders = {
-            f"{k}": Transmitter(position=place, antenna=preset.antenna)
-            for k, place in enumerate(self.places)
-        }
-        maps = make_transmitter_maps(
+        rss_dbm = fields_of_places(
             self.plan,
-            senders,
-            None if folder is None else folder / f"{self.name}.h5",
+            self.layout,
+            self.places,
             config=preset.config,
-            receive_antenna=preset.antenna,
+            antenna=preset.antenna,
             threads=1,
+            path=None if folder is None else folder / f"{self.name}.h5",
         )
-        rss_dbm = np.stack([self.layout.on_cells(maps[name].rss_dbm) for name in senders])
         everywhere = np.arange(self.layout.n_states)
         mission = mission_of_fields(
             self.plan, (self.layout,), rss_dbm, self.places, starts=everywhere

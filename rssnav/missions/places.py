@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,7 +118,8 @@ def fields_of_places(
     config: TraceConfig | None,
     antenna: Antenna,
     threads: int | None,
-    progress: Progress | None,
+    progress: Progress | None = None,
+    path: Path | None = None,
 ) -> NDArray[np.float64]:
     """RSS of each cell for a transmitter at each place, shape (M, S) [dBm].
 
@@ -133,6 +135,8 @@ def fields_of_places(
         At both ends.
     config, threads, progress
         As for `rssnav.maps.make_map`.
+    path : Path, optional
+        File that the maps are kept in, as by `make_transmitter_maps`.
     """
     senders = {
         f"{k}": Transmitter(position=place, antenna=antenna) for k, place in enumerate(places)
@@ -140,6 +144,7 @@ def fields_of_places(
     maps = make_transmitter_maps(
         plan,
         senders,
+        path,
         config=config,
         receive_antenna=antenna,
         threads=threads,
