@@ -200,7 +200,7 @@ def _of_door(state: DoorState) -> str:
     x, y = state.place
     told = f"{was}, as in the plan; the readings do not tell"
     if math.isinf(state.evidence):
-        told = f"{was}, as the plan needs it"
+        told = f"{now}, as the plan needs it"
     elif state.is_told:
         told = f"{now}, as in the plan" if now == was else f"{now}, and not {was} as in the plan"
         told += f" (log likelihood ratio {state.evidence:.1f})"
