@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from floorplans.generators.rooms import Border, Room, borders
+from floorplans.generators.rooms import Border, Room, Use, borders
 from floorplans.generators.style import DOOR, WINDOW, Made, Style
 from floorplans.walls import Opening, Point, Wall
 
@@ -23,11 +23,21 @@ LARGE_M2 = 60.0
 SECOND_DOOR = 0.12
 """Chance of a door between two rooms that have one already."""
 
+CONNECTED: frozenset[Use] = frozenset(
+    ("office", "open office", "meeting", "living", "bedroom", "kitchen", "guest", "class")
+)
+"""Uses of rooms that may have connecting doors."""
+
 PREFERRED = ("corridor", "hall", "living", "guest", "class", "open office", "office")
 """Where a room without a corridor beside it has its door, best first."""
 
 
-def build(rooms: Sequence[Room], style: Style, rng: np.random.Generator) -> tuple[Wall, ...]:
+def build(
+    rooms: Sequence[Room],
+    style: Style,
+    rng: np.random.Generator,
+    connecting: tuple[float, np.random.Generator],
+) -> tuple[Wall, ...]:
     """Make all walls of a layout with their openings, in a fixed order.
 
     Parameters
@@ -38,6 +48,9 @@ def build(rooms: Sequence[Room], style: Style, rng: np.random.Generator) -> tupl
         Materials, height, and how much is glazed or open.
     rng
         Source of randomness.
+    connecting
+        Chance of a door between two rooms that have none, and its own source of randomness: all
+        else is as without.
     """
     lines = [
         (border, made)
@@ -46,11 +59,14 @@ def build(rooms: Sequence[Room], style: Style, rng: np.random.Generator) -> tupl
     ]
     inner = [border for border, _ in lines if min(border.below, border.above) >= 0]
     doors = _doors(rooms, inner, rng)
+    more = _connecting_doors(rooms, inner, doors, *connecting)
     walls: list[Wall] = []
     for border, made in lines:
         wall = _wall(border, made, style.height_m)
         if border in doors:
             wall = replace(wall, openings=(_door(border, rooms, style, rng),))
+        elif border in more:
+            wall = replace(wall, openings=(_door(border, rooms, style, connecting[1]),))
         elif min(border.below, border.above) < 0:
             room = rooms[max(border.below, border.above)]
             wall = replace(wall, openings=tuple(_windows(border, room, style)))
@@ -103,6 +119,31 @@ def _doors(rooms: Sequence[Room], inner: Sequence[Border], rng: np.random.Genera
         if uses <= {"office", "living", "kitchen", "class"} and rng.random() < SECOND_DOOR:
             doors.add(border)
     return doors
+
+
+def _connecting_doors(
+    rooms: Sequence[Room],
+    inner: Sequence[Border],
+    doors: set[Border],
+    chance: float,
+    rng: np.random.Generator,
+) -> set[Border]:
+    """Choose borders for further doors, at most one between two rooms and none to a corridor."""
+
+    def joined(border: Border) -> frozenset[int]:
+        return frozenset(min(_merged(rooms, n)) for n in (border.below, border.above))
+
+    pairs = {joined(border) for border in doors}
+    found: set[Border] = set()
+    for border in inner:
+        uses = {rooms[border.below].use, rooms[border.above].use}
+        wide = border.length >= DOOR_CM + 2 * JAMB_CM
+        if not wide or not uses <= CONNECTED or joined(border) in pairs:
+            continue
+        pairs.add(joined(border))
+        if rng.random() < chance:
+            found.add(border)
+    return found
 
 
 def _first(rooms: Sequence[Room]) -> int:

@@ -16,6 +16,7 @@ from floorplans.generators.rooms import Room
 from floorplans.generators.style import Style
 from floorplans.plan import FloorPlan
 from floorplans.transmitters import MAX_TRANSMITTERS
+from floorplans.walls import Wall
 
 Kind = Literal["flat", "office", "hotel", "school", "hall"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -54,6 +55,7 @@ def generate(
     furniture: bool = True,
     shape: str = "rectangle",
     n_transmitters: int = 3,
+    connecting_doors: float = 0.0,
 ) -> FloorPlan:
     """Generate a building; the same arguments give the same plan on any machine.
 
@@ -71,6 +73,10 @@ def generate(
         Of its outline: an L has a wing.
     n_transmitters : int
         How many access points hang under the ceiling, spread evenly: 0 to 1000.
+    connecting_doors : float
+        Chance of a door between two neighbouring rooms that have none, beside those that lead to
+        each room: with them there is more than one way. Walls and all other doors do not depend on
+        it.
 
     Returns
     -------
@@ -95,7 +101,10 @@ def generate(
         raise ValueError(
             f"n_transmitters = {n_transmitters}: expected an integer from 0 to {MAX_TRANSMITTERS}"
         )
+    if not 0.0 <= connecting_doors <= 1.0:
+        raise ValueError(f"connecting_doors = {connecting_doors}: expected a chance from 0 to 1")
     rng = np.random.Generator(np.random.PCG64([KINDS.index(kind), int(seed)]))
+    doors_rng = np.random.Generator(np.random.PCG64([KINDS.index(kind), int(seed), 1]))
     low, high = AREA_M2[kind]
     if shape == "L":
         least = LEAST_WITH_WING_M2[kind]
@@ -104,9 +113,9 @@ def generate(
         low = max(low, round(least))
     wanted_m2 = float(rng.integers(low, high + 1)) if area_m2 is None else area_m2
     rooms = LAYOUTS[kind](rng, wanted_m2, shape)
-    return _furnished(
-        f"{kind} {int(seed)}", rooms, Style.of(kind, rng), rng, furniture, n_transmitters
-    )
+    style = Style.of(kind, rng)
+    walls = build(rooms, style, rng, (connecting_doors, doors_rng))
+    return _furnished(f"{kind} {int(seed)}", rooms, style, walls, rng, furniture, n_transmitters)
 
 
 def _is_integer(value: float, least: int, most: int) -> bool:
@@ -117,11 +126,11 @@ def _furnished(
     name: str,
     rooms: list[Room],
     style: Style,
+    walls: tuple[Wall, ...],
     rng: np.random.Generator,
     furniture: bool,
     n_transmitters: int,
 ) -> FloorPlan:
-    walls = build(rooms, style, rng)
     clutter = furnish(rooms, style.height_m, rng) if furniture else ()
     standing = (*walls, *clutter)
     source, start = source_and_start(rooms, standing, rng)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
@@ -17,9 +17,11 @@ import floorplans
 from floorplans import FloorPlan
 from raytrace import Grid, TraceConfig
 from rssnav.arguments import require
-from rssnav.benchmark.frozen import FINGERPRINTS, Split
+from rssnav.benchmark.frozen import DOOR_FINGERPRINTS, FINGERPRINTS, Split
+from rssnav.doors import Door, shut_doors, with_changed
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
 from rssnav.missions import Layout, Mission, ReadingAbove, Task, spread_places
+from rssnav.missions.doors import detour_doors, mission_of_doors
 from rssnav.missions.layout import WorldError
 from rssnav.missions.places import fields_of_places, mission_of_fields, reachable_layout
 from rssnav.policies import Hypotheses
@@ -37,6 +39,9 @@ PAPER_PLACES = 20
 
 GOAL = ReadingAbove(-21.0)
 """Where the transmitter is found: -21 dBm is free space at 2 m."""
+
+DOORS = 3
+"""Doors of a building that open and close, at most."""
 
 LEAST_STEPS = 10
 """Flights begin at least so many steps from where any of the transmitters is found."""
@@ -61,11 +66,15 @@ class Building:
         From 0, within the site.
     plan : FloorPlan
     layout : Layout
-        The largest part of its cells that hangs together.
+        The largest connected part of its cells.
     places : tuple of (float, float, float)
         Transmitters [m].
     preset : {"building", "paper"}
         Antennas and limits of the traces.
+    drawn : (str, int, float) or None
+        Kind, seed and area [m^2] of a generated building.
+    doors : tuple of Door or None
+        Doors that open and close; None where doors are as in the plan.
     """
 
     site: Site
@@ -74,6 +83,8 @@ class Building:
     layout: Layout
     places: tuple[tuple[float, float, float], ...]
     preset: PresetName = "building"
+    drawn: tuple[str, int, float] | None = None
+    doors: tuple[Door, ...] | None = None
 
     @property
     def name(self) -> str:
@@ -82,9 +93,33 @@ class Building:
 
     @cached_property
     def fingerprint(self) -> str:
-        """Hash of plan and places."""
-        places = ";".join(",".join(f"{x:.9f}" for x in place) for place in self.places)
-        return sha256(f"{self.plan.sha256} {places}".encode()).hexdigest()
+        """Hash of plan, places, and doors that open and close."""
+        content = ";".join(",".join(f"{x:.9f}" for x in place) for place in self.places)
+        if self.doors is not None:
+            content += "".join(f" door {door.wall} {door.opening}" for door in self.doors)
+        return sha256(f"{self.plan.sha256} {content}".encode()).hexdigest()
+
+    @cached_property
+    def with_doors(self) -> Building:
+        """The building with all doors open, of which some open and close.
+
+        A generated one has connecting doors besides, between any two rooms side by side. Of all
+        doors those are chosen that can be closed without cutting off a cell, and lengthen the ways
+        to the places most (`detour_doors`).
+
+        Raises
+        ------
+        WorldError
+            When a generated building is not the one of this version of the benchmark.
+        """
+        plan = self.plan if self.drawn is None else _draw(*self.drawn, connecting_doors=1.0)
+        plan = with_changed(plan, shut_doors(plan))
+        whole = Layout.of_plan(plan, Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M))
+        inside = whole.reachable(whole.nearest(*self.layout.position[0]))
+        layout = whole.part(np.sort(inside))
+        doors = detour_doors(plan, layout, self.places, DOORS)
+        found = replace(self, plan=plan, layout=layout, drawn=None, doors=doors)
+        return found if self.drawn is None else _checked(found)
 
     @cached_property
     def hypotheses(self) -> Hypotheses:
@@ -101,25 +136,13 @@ class Building:
         )
 
     def mission(self, folder: Path | None = None) -> Mission:
-        """Mission with a mode for each place, which is drawn for each episode.
+        """Mission with a mode for each place, and state of the doors, drawn for each episode.
 
         Flights begin in any cell that is far enough from all places. The maps are kept in a folder,
         if one is given.
         """
-        preset = PRESETS[self.preset]
-        rss_dbm = fields_of_places(
-            self.plan,
-            self.layout,
-            self.places,
-            config=preset.config,
-            antenna=preset.antenna,
-            threads=1,
-            path=None if folder is None else folder / f"{self.name}.h5",
-        )
-        everywhere = np.arange(self.layout.n_states)
-        mission = mission_of_fields(
-            self.plan, (self.layout,), rss_dbm, self.places, starts=everywhere
-        )
+        path = None if folder is None else folder / f"{self.name}.h5"
+        mission = self._everywhere(path)
         hops = Hypotheses.of_mission(mission, Task(GOAL)).hops
         far = np.flatnonzero(hops.min(axis=1) >= LEAST_STEPS)
         if hops.max() >= NO_WAY or not far.size:
@@ -128,6 +151,32 @@ class Building:
                 f"{LEAST_STEPS} steps at least; a larger building is needed"
             )
         return mission.from_starts(far)
+
+    def _everywhere(self, path: Path | None) -> Mission:
+        """Mission of flights that begin in any cell."""
+        preset = PRESETS[self.preset]
+        if self.doors is not None:
+            return mission_of_doors(
+                self.plan,
+                self.layout,
+                self.doors,
+                self.places,
+                config=preset.config,
+                antenna=preset.antenna,
+                threads=1,
+                path=path,
+            )
+        rss_dbm = fields_of_places(
+            self.plan,
+            self.layout,
+            self.places,
+            config=preset.config,
+            antenna=preset.antenna,
+            threads=1,
+            path=path,
+        )
+        everywhere = np.arange(self.layout.n_states)
+        return mission_of_fields(self.plan, (self.layout,), rss_dbm, self.places, starts=everywhere)
 
 
 def generated(split: Split, count: int) -> Iterator[Building]:
@@ -150,7 +199,8 @@ def generated(split: Split, count: int) -> Iterator[Building]:
 
 
 def _checked(building: Building) -> Building:
-    if not building.fingerprint.startswith(FINGERPRINTS[building.site][building.number]):
+    known = FINGERPRINTS if building.doors is None else DOOR_FINGERPRINTS
+    if not building.fingerprint.startswith(known[building.site][building.number]):
         raise WorldError(
             f"building {building.name} is not that of the benchmark: plans are drawn or generated "
             "in another way than in the version of rssnav that froze it"
@@ -197,12 +247,24 @@ def own(plans: Sequence[str | Path]) -> Iterator[Building]:
 def _generate(split: Split, number: int, seed: int) -> Building | None:
     generator = np.random.default_rng(seed)
     kind, area_m2 = _KINDS[number % len(_KINDS)], generator.uniform(*_AREA_M2)
-    plan = floorplans.generate(kind, seed, area_m2=area_m2, furniture=False, n_transmitters=0)
+    plan = _draw(kind, seed, area_m2)
     whole = Layout.of_plan(plan, Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M))
     layout = _largest_part(plan, whole)
     if layout.n_states < _LEAST_PART * whole.n_states:
         return None
-    return Building(split, number, plan, layout, _draw_places(plan, layout, generator))
+    places = _draw_places(plan, layout, generator)
+    return Building(split, number, plan, layout, places, drawn=(kind, seed, area_m2))
+
+
+def _draw(kind: str, seed: int, area_m2: float, connecting_doors: float = 0.0) -> FloorPlan:
+    return floorplans.generate(
+        kind,
+        seed,
+        area_m2=area_m2,
+        furniture=False,
+        n_transmitters=0,
+        connecting_doors=connecting_doors,
+    )
 
 
 def _draw_places(
@@ -222,7 +284,7 @@ def _draw_places(
 
 
 def _largest_part(plan: FloorPlan, whole: Layout | None = None) -> Layout:
-    """Cells of the largest part that hangs together, in order."""
+    """Cells of the largest connected part, in order."""
     if whole is None:
         whole = Layout.of_plan(plan, Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M))
     left = np.ones(whole.n_states, dtype=np.bool_)

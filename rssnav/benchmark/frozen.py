@@ -51,5 +51,47 @@ TEXT: dict[Split | Literal["paper"], str] = {
     """,
 }
 
+DOOR_TEXT: dict[Split, str] = {
+    "train": """
+        a02a1ac0 153f4e85 9f41e6cf 4fc6e296 2aa8e248 2b0ab1be 9cd263f2 646a2e13 d0051219 0ee1da32
+        1d87ea6b 404259d7 61ee43e9 3dc5bd6b 66473fcc 235916c2 38b31922 8e225d31 c3fd9777 298e013d
+        72cb98b8 004a5fd8 6e431957 992208f1 508badf3 e9cd983a 11bd91de 56c4fa31 62a9d60b 475acf81
+        3cacaa4a efbff3fb 2ae3d47f 61697535 5ec90990 094fa562 4df987dd 91e9b8f5 07ac32f3 5e031f2e
+        c98d6f08 ba431b5b 708f8206 63a595bd 9124439c 3a4892ca 36f28dce 7664a31d 652ee1b1 7669098c
+        52f2213d a21a45ef 1cd892e7 bb7f5125 ddd7da76 27b2ebb4 ad43dea4 4a52322b b874547b 23dd8059
+        946442a3 52b5c762 7ae3bf5e 247b4311 29329681 e2c1eb85 becb4845 62998170 7c67f1cb c30bccba
+        4333a8ad 45fa9b07 512bc233 b3354c20 e319206f e5394d0c 7cf52017 44bbc639 df2051a6 6165ac5f
+        bf0371f2 619b44c0 b3d81562 2fe711e6 27ce8e6f 5654313b 3965460e 0e8024a0 00a91554 7af71d82
+        bc4271fa ac3f5bf6 0064ab20 fbedaf11 0d80eee0 d21054a1 98d56519 64e8dca6 901dd580 badcd8ab
+        65b421a0 06ee8ea6 904770ff 92ef1e3a 393af611 d75687a8 854f460a 1fd6600a 9669f2f4 08b54156
+        76eee6c7 c49d4b82 52fb4543 dbdc9cbc 2baa9b33 1ae1ab9b 03a4444f f5b7a9bd 280c28c0 6d3202d5
+        e30f8394 99c58ea8 144f4411 57d39c20 fe78b6a0 d10033e8 ffac2e3b 0e44361f 77771a9b 56197d02
+        cb248aeb 0a608f69 cc06edd8 fbca39b0 86cfe55b 06f5fee9 0c2be25c ad3ec212 97accfa9 e16503d2
+        aca1b2d8 733aeb89 872f6e3e 743ea4f9 528ccea1 e6486ca2 1e083cd2 69351a17 f3972e97 f2005aae
+        d2413dc2 cc239eb5 ece8da36 0fb72748 b55ee2df 29056e88 6cdf7d53 207d0efc fd7d640a 66588bbe
+        98bddc4c 51303a4b 0dd5692c a28f56e8 e2fdec5e afc96080 131f6f67 927d0ad4 5aec65e0 9f369864
+        6a931e53 21c8c1ef 83b1ed75 00e54914 e4a7ddbc 7cdd6ce3 a4b2a2cd 5a3e94af d151e24d 5d8487ad
+        58faf876 ed29ecb5 dc41ad86 0d0172f7 b0e82b30 507a1f74 f7673d58 00551f4c 2a957b8f d9bb06b8
+        cc5436b6 23bd85e7 02164e79 aac6ac33 9caebebe aa569694 37df3182 679f74fc 4ef67660 bc0903db
+    """,
+    "validation": """
+        edfa1024 1dee370a c06ad3e0 5bb83e97 0f4fb882 752cc9db 3825f5ad dd15db9b 10a48845 73bd8cea
+        afb32c49 7de6a396 40165715 b37816f9 26db2149 581a1492 c717b3cc 9a0a9289 d1d7716d 0fd6785c
+        e01748b4 c330bea7 1dcaee56 c73564b2 07d6799f 305461a0 2ae0ca32 8b1bbe38 df264a4e e23fe6b3
+        58c9016c 2776b964 74ee096f d412b07b c9fb82b5 c806e250 29622c7e 0cf3c78e 872c8aeb e7e1ab7d
+        d69d3d48 d7aaf665 f65f964b 70e99a18 e7783633 b4361a8b ad66fe04 069abf09 28495b23 b5b209f9
+    """,
+    "test": """
+        5dad4571 604efe3e b27284ca 62d4d43d 49b2b620 2158c6a4 78de9156 16978d50 f7deb69e b66cd26c
+        6f252a6d d251e5cc da3bc4ec 9e3de821 b55218c4 a399dc65 7669c629 d5763d12 f5ab5746 219e1c06
+        2e2e1ee6 39106084 62bfb6a1 d9755302 cfee9bea a0cd0240 9eed1a7e c026cb4a c40d345b 4124eb3e
+        f0be658a 3e46255d f5976241 df801e36 7bc7fcdf 67cd055e ebca28fc d5911d6b 78494b28 6f583592
+        427eebf8 6311f892 b6089350 52439846 2b6b8059 59cb7256 9510890d 3c226eca 477a1440 db62774b
+    """,
+}
+
 FINGERPRINTS: dict[str, list[str]] = {site: text.split() for site, text in TEXT.items()}
 """First 8 hexadecimal digits of the hash of each building's plan and transmitters, in order."""
+
+DOOR_FINGERPRINTS: dict[str, list[str]] = {site: text.split() for site, text in DOOR_TEXT.items()}
+"""The same of each generated building with doors that open and close."""

@@ -20,7 +20,7 @@ _TITLES = {
     "own": "Own buildings",
 }
 _HEAD = (
-    "policy", "knows", "success", "SPL (95 %)", "median time [s]",
+    "policy", "track", "success", "SPL (95 %)", "median time [s]",
     f"found within {', '.join(map(str, WITHIN_S[:-1]))} s", "false alarms",
     "kJ", "turns", "collisions", "µs a step",
 )  # fmt: skip
@@ -41,7 +41,7 @@ def write(folder: Path, scores: Sequence[Score], extent: Extent) -> list[Path]:
 
 
 def as_markdown(scores: Sequence[Score]) -> str:
-    """A table for each site and task, best SPL first."""
+    """A table for each site and condition, best SPL first."""
     parts: list[str] = []
     for title, rows in _grouped(scores).items():
         lines = [_row(_HEAD), _row(["---"] * 2 + ["---:"] * (len(_HEAD) - 2))]
@@ -78,13 +78,13 @@ def words(extent: Extent) -> str:
 
 
 def table_rows(scores: Sequence[Score]) -> list[list[str]]:
-    """Short rows for a terminal: buildings, task, policy, track, success, SPL."""
+    """Short rows for a terminal: buildings, condition, policy, track, success, SPL."""
     return [
         [
             s.site,
             s.condition,
-            s.entrant,
-            s.knows,
+            s.policy,
+            s.track,
             f"{s.success.value:.3f}",
             _interval(s.spl, len(s.spl_by_building)),
         ]
@@ -104,8 +104,8 @@ def _grouped(scores: Sequence[Score]) -> dict[str, list[list[str]]]:
 
 def _words(score: Score) -> list[str]:
     return [
-        score.entrant,
-        score.knows,
+        score.policy,
+        score.track,
         f"{score.success.value:.3f}",
         _interval(score.spl, len(score.spl_by_building)),
         "-" if score.median_s is None else f"{score.median_s:.0f}",

@@ -6,19 +6,22 @@ A change of anything here, of the buildings or of the stepping kernel's flights 
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
-from rssnav.benchmark.buildings import GOAL, Site
+import floorplans
+from rssnav.benchmark.buildings import GOAL, Building, Site
 from rssnav.benchmark.errors import check
 from rssnav.benchmark.frozen import FINGERPRINTS, Split
 from rssnav.discrete_states import Fluctuation
 from rssnav.missions import Mission, ModeProcess, MultirotorEnergy, Observation, Task
 
-BENCHMARK_VERSION = 1
+BENCHMARK_VERSION = 2
+"""Version 2 has the condition "doors" besides; flights in the other conditions are those of 1."""
 
 MAX_STEPS = 400
 """Seconds after which a flight ends without success."""
@@ -28,12 +31,12 @@ CONFIRMATIONS, ERROR = 64, 0.002
 fluctuate, and the probability of a false alarm when a cell is visited."""
 
 BATTERY_KJ = 8.0
-"""Energy after which a flight ends in the task "battery" [kJ]."""
+"""Energy after which a flight ends in the condition "battery" [kJ]."""
 
 
 @dataclass(frozen=True)
 class Condition:
-    """A task of the benchmark.
+    """What the task, to find the transmitter, is done under.
 
     Parameters
     ----------
@@ -45,12 +48,15 @@ class Condition:
         Probability that the transmitter is drawn anew among the building's places, per second.
     battery_kj : float
         Energy after which a flight ends without success [kJ].
+    doors : bool
+        Whether doors are closed or open by chance in each flight (`Building.with_doors`).
     """
 
     name: str
     sigma_db: float = 0.0
     jump_probability: float = 0.0
     battery_kj: float = math.inf
+    doors: bool = False
 
     @property
     def task(self) -> Task:
@@ -67,17 +73,22 @@ class Condition:
         )
 
     def observation(self, *, world_seen: bool = False) -> Observation:
-        """RSS and the UAV's own cell; for oracles also heading and place of the transmitter."""
+        """RSS and the UAV's own cell; for oracles also heading, doors and the mode."""
         return Observation(
             None,
             cell=True,
             heading=world_seen,
+            doors=world_seen,
             mode=world_seen,
             fluctuation=Fluctuation(self.sigma_db),
         )
 
+    def building(self, building: Building) -> Building:
+        """Building whose doors are as in this condition."""
+        return building.with_doors if self.doors else building
+
     def world(self, mission: Mission) -> Mission:
-        """Mission whose transmitter moves as in this task."""
+        """Mission whose transmitter moves as in this condition."""
         if self.jump_probability == 0.0:
             return mission
         return mission.with_modes(ModeProcess.jumping(mission.n_modes, self.jump_probability))
@@ -89,8 +100,14 @@ CONDITIONS = (
     Condition("4 dB", sigma_db=4.0),
     Condition("jumps", jump_probability=0.01),
     Condition("battery", battery_kj=BATTERY_KJ),
+    Condition("doors", doors=True),
 )
-"""The tasks."""
+"""All conditions."""
+
+
+def conditions_of(site: Site) -> tuple[Condition, ...]:
+    """Conditions in the buildings of a site: the paper's have no doors that open and close."""
+    return tuple(each for each in CONDITIONS if not (each.doors and site == "paper"))
 
 
 @dataclass(frozen=True)
@@ -106,9 +123,11 @@ class Extent:
     paper : bool
         Whether the paper's two buildings are flown in, too.
     plans : tuple of str
-        Files of further plans.
+        Hashes of further plans: extents are the same if the plans' contents are.
     seeds : int
         Seeds, from 0.
+    plan_files : tuple of str
+        Names or files of these plans.
     """
 
     split: Split = "test"
@@ -116,9 +135,17 @@ class Extent:
     paper: bool = True
     plans: tuple[str, ...] = ()
     seeds: int = 10
+    plan_files: tuple[str, ...] = field(default=(), compare=False)
 
     @property
-    def buildings_of(self) -> dict[str, int]:
+    def written(self) -> dict[str, Any]:
+        """What is written to files, and compared; the same on any machine."""
+        content = json.loads(json.dumps(asdict(self)))
+        del content["plan_files"]
+        return content
+
+    @property
+    def buildings_of(self) -> dict[Site, int]:
         """Number of buildings of each site."""
         return {self.split: self.generated, "paper": 2 * self.paper, "own": len(self.plans)}
 
@@ -169,7 +196,8 @@ def extent_of(
         paper=whole.paper and known == "test",
         split=known,
         generated=count,
-        plans=tuple(map(str, plans)),
+        plans=tuple(floorplans.load(file).sha256 for file in plans),
+        plan_files=tuple(map(str, plans)),
         seeds=seeds or whole.seeds,
     )
     check(extent.buildings > 0, "buildings", count, "at least 1, or a plan")
@@ -177,5 +205,5 @@ def extent_of(
 
 
 def flights_of_a_seed(site: Site) -> int:
-    """Flights of each seed in each building and task."""
+    """Flights of each seed in each building and condition."""
     return 5 if site == "paper" else 3

@@ -1,4 +1,4 @@
-"""Flights of all entrants, saved building by building, so that a run can be resumed."""
+"""Flights of all policies, saved building by building, so that a run can be resumed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from hashlib import sha256
 from itertools import chain
 from pathlib import Path
@@ -25,28 +25,31 @@ from atomicfiles import atomic_write
 from raytrace.threads import n_threads
 from raytrace.trace import TRACER_VERSION
 from rssnav.benchmark.buildings import Building, Site, generated, own, paper
-from rssnav.benchmark.entrants import Briefing, Entrant, Guarded
+from rssnav.benchmark.policies import Briefing, Guarded, PolicySpec
 from rssnav.benchmark.protocol import (
     BENCHMARK_VERSION,
-    CONDITIONS,
     Condition,
     Extent,
+    conditions_of,
     flights_of_a_seed,
 )
 from rssnav.missions import Flights, Mission, fly
 from rssnav.policies import Hypotheses
+
+_WARMING_S = 3
+"""Seconds of a flight before the first, in which compiled kernels are loaded; it is not timed."""
 
 Show = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
 class Record:
-    """Flights of an entrant in a task and a building; lists have an item for each flight.
+    """Flights of a policy in a condition and a building; lists have an item for each flight.
 
     Attributes
     ----------
-    entrant, knows, condition : str
-        Who, its track, which task.
+    policy, track, condition : str
+        Who, its track, under which condition.
     site : {"train", "validation", "test", "paper", "own"}
         Where the building comes from.
     building : str
@@ -64,8 +67,8 @@ class Record:
         Processor time of all flights [s].
     """
 
-    entrant: str
-    knows: str
+    policy: str
+    track: str
     condition: str
     site: Site
     building: str
@@ -81,7 +84,7 @@ class Record:
 
 
 def run(
-    entrants: Sequence[Entrant],
+    policies: Sequence[PolicySpec],
     extent: Extent,
     folder: Path,
     *,
@@ -89,11 +92,11 @@ def run(
     resume: bool = True,
     show: Show | None = None,
 ) -> list[Record]:
-    """Fly all entrants in all tasks and buildings, or load what was flown before.
+    """Fly all policies in all conditions and buildings, or load what was flown before.
 
     Parameters
     ----------
-    entrants : sequence of Entrant
+    policies : sequence of PolicySpec
         Who flies; what makes them can be pickled.
     extent : Extent
         How much.
@@ -115,12 +118,12 @@ def run(
     shown("buildings", 0, total)
     if count == 1 or multiprocessing.current_process().daemon:  # these may not have processes
         for building in buildings(extent):
-            records[building.name] = fly_in(building, entrants, extent, folder, resume)
+            records[building.name] = fly_in(building, policies, extent, folder, resume)
             shown("buildings", len(records), total)
     else:
         with _processes(count) as pool:
             waiting = {
-                pool.submit(fly_in, building, entrants, extent, folder, resume): building.name
+                pool.submit(fly_in, building, policies, extent, folder, resume): building.name
                 for building in buildings(extent)
             }
             for done in as_completed(waiting):
@@ -136,7 +139,7 @@ def _show_nothing(stage: str, done: int, total: int) -> None:
 
 def buildings(extent: Extent) -> Iterator[Building]:
     """Yield the buildings of an extent; those that take longest first."""
-    parts = [own(extent.plans)]
+    parts = [own(extent.plan_files)]
     if extent.paper:
         parts.append(paper())
     if extent.generated:
@@ -182,25 +185,25 @@ def _end_with_parent() -> None:
 
 
 def fly_in(
-    building: Building, entrants: Sequence[Entrant], extent: Extent, folder: Path, resume: bool
+    building: Building, policies: Sequence[PolicySpec], extent: Extent, folder: Path, resume: bool
 ) -> list[Record]:
-    """Fly entrants in a building, or load their flights."""
-    mission: Mission | None = None
+    """Fly policies in a building, or load their flights."""
+    worlds = _Worlds(building, folder / "maps")
     records: list[Record] = []
-    for entrant in entrants:
-        path = folder / "flights" / f"{building.name}-{_file_name(entrant)}.json"
+    for spec in policies:
+        path = folder / "flights" / f"{building.name}-{_file_name(spec)}.json"
         key = {
             "version": BENCHMARK_VERSION,
             "tracer": TRACER_VERSION,
             "building": building.fingerprint,
             "seeds": extent.seeds,
-            "entrant": [entrant.name, entrant.knows, entrant.source],
+            "policy": [spec.name, spec.track, spec.source],
         }
         flown = _load(path, key) if resume else None
         if flown is None:
-            mission = mission or building.mission(folder / "maps")
             flown = [
-                _record(entrant, condition, building, mission, extent) for condition in CONDITIONS
+                _record(spec, condition, worlds, extent)
+                for condition in conditions_of(building.site)
             ]
             rows = [asdict(record) for record in flown]
             with atomic_write(path) as temporary:
@@ -209,8 +212,22 @@ def fly_in(
     return records
 
 
-def _file_name(entrant: Entrant) -> str:
-    name = f"{entrant.knows} {entrant.name}"
+class _Worlds:
+    """A building as its doors are in each condition, and its missions: each made once."""
+
+    def __init__(self, building: Building, folder: Path) -> None:
+        self.building, self._folder = building, folder
+        self._made: dict[bool, tuple[Building, Mission]] = {}
+
+    def of(self, condition: Condition) -> tuple[Building, Mission]:
+        if condition.doors not in self._made:
+            building = condition.building(self.building)
+            self._made[condition.doors] = (building, building.mission(self._folder))
+        return self._made[condition.doors]
+
+
+def _file_name(spec: PolicySpec) -> str:
+    name = f"{spec.track} {spec.name}"
     readable = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
     return f"{readable}-{sha256(name.encode()).hexdigest()[:8]}"
 
@@ -231,17 +248,19 @@ def _hash(rows: object) -> str:
     return sha256(json.dumps(rows).encode()).hexdigest()
 
 
-def _record(
-    entrant: Entrant, condition: Condition, building: Building, mission: Mission, extent: Extent
-) -> Record:
+def _record(spec: PolicySpec, condition: Condition, worlds: _Worlds, extent: Extent) -> Record:
+    building, mission = worlds.of(condition)
     world, task = condition.world(mission), condition.task
-    policy = Guarded(entrant.make(Briefing(condition, entrant.knows, building, mission)))
+    policy = Guarded(spec.make(Briefing(condition, spec.track, building, mission)))
+    sight = condition.observation(world_seen=spec.track == "world")
+    fly(world, replace(task, max_steps=_WARMING_S), sight, policy, episodes=1)
+    policy.collisions = 0
     begin_s = time.process_time()
     flown = [
         fly(
             world,
             task,
-            condition.observation(world_seen=entrant.knows == "world"),
+            sight,
             policy,
             episodes=flights_of_a_seed(building.site),
             seed=1000 * building.number + seed,
@@ -251,8 +270,8 @@ def _record(
     cpu_s = time.process_time() - begin_s
     hops = Hypotheses.of_mission(mission, task).hops
     return Record(
-        entrant=entrant.name,
-        knows=entrant.knows,
+        policy=spec.name,
+        track=spec.track,
         condition=condition.name,
         site=building.site,
         building=building.name,

@@ -18,12 +18,12 @@ WITHIN_S = (25, 50, 100, 200, 400)
 
 @dataclass(frozen=True)
 class Score:
-    """An entrant's result in a task and the buildings of a site.
+    """A policy's result in a condition and the buildings of a site.
 
     Attributes
     ----------
-    site, condition, entrant, knows : str
-        Where, which task, who, its track.
+    site, condition, policy, track : str
+        Where, under which condition, who, its track.
     flights : int
         In all buildings.
     spl_by_building : list of float
@@ -45,8 +45,8 @@ class Score:
 
     site: str
     condition: str
-    entrant: str
-    knows: str
+    policy: str
+    track: str
     flights: int
     spl_by_building: list[float]
     spl: Estimate
@@ -61,10 +61,10 @@ class Score:
 
 
 def scores(records: Sequence[Record]) -> list[Score]:
-    """Score of each entrant in each task and site, in the order of the records."""
+    """Score of each policy in each condition and site, in the order of the records."""
     groups: dict[tuple[str, ...], list[Record]] = {}
     for record in records:
-        key = (record.site, record.condition, record.knows, record.entrant)
+        key = (record.site, record.condition, record.track, record.policy)
         groups.setdefault(key, []).append(record)
     return [_score(group) for group in groups.values()]
 
@@ -86,8 +86,8 @@ def _score(group: list[Record]) -> Score:
     return Score(
         site=first.site,
         condition=first.condition,
-        entrant=first.entrant,
-        knows=first.knows,
+        policy=first.policy,
+        track=first.track,
         flights=found.size,
         spl_by_building=[round(value, 4) for value in by_building],
         spl=_rounded(by_building),

@@ -15,9 +15,15 @@ from typing import Any, cast, get_args
 
 from raytrace.trace import TRACER_VERSION
 from rssnav.benchmark.buildings import Site
-from rssnav.benchmark.entrants import Knows
 from rssnav.benchmark.errors import BenchmarkError
-from rssnav.benchmark.protocol import BENCHMARK_VERSION, CONDITIONS, Extent, flights_of_a_seed
+from rssnav.benchmark.policies import Track
+from rssnav.benchmark.protocol import (
+    BENCHMARK_VERSION,
+    CONDITIONS,
+    Extent,
+    conditions_of,
+    flights_of_a_seed,
+)
 from rssnav.benchmark.scores import WITHIN_S, Score
 from rssnav.experiments.statistics import Estimate
 
@@ -30,7 +36,7 @@ def as_json(scores: Sequence[Score], extent: Extent) -> str:
         "rssnav": version("rssnav"),
         "tracer": TRACER_VERSION,
         "python": platform.python_version(),
-        "extent": json.loads(json.dumps(asdict(extent))),
+        "extent": extent.written,
         "scores": [asdict(score) for score in scores],
     }
     return json.dumps(content, indent=1) + "\n"
@@ -56,7 +62,7 @@ def read_scores(path: Path, extent: Extent) -> list[Score]:
         raise BenchmarkError(f"{path}: not a results.json of rssnav benchmark")
     for key, expected in (
         ("version", BENCHMARK_VERSION),
-        ("extent", json.loads(json.dumps(asdict(extent)))),
+        ("extent", extent.written),
     ):
         if content.get(key) != expected:
             raise BenchmarkError(
@@ -72,13 +78,14 @@ def read_scores(path: Path, extent: Extent) -> list[Score]:
 
 
 def _check_whole(found: Sequence[Score], extent: Extent, path: Path) -> None:
-    """Check that every policy flew in all tasks and sites."""
-    tasks, sites = len(CONDITIONS), sum(n > 0 for n in extent.buildings_of.values())
-    for (name, knows), count in Counter((s.entrant, s.knows) for s in found).items():
-        if count != tasks * sites:
+    """Check that every policy flew in all conditions and sites."""
+    sites: list[Site] = [site for site, n in extent.buildings_of.items() if n > 0]
+    expected = sum(len(conditions_of(site)) for site in sites)
+    for (name, track), count in Counter((s.policy, s.track) for s in found).items():
+        if count != expected:
             raise BenchmarkError(
-                f"{path}: scores: {name!r} of track {knows!r} has {count} entries; expected "
-                f"{tasks * sites}, one for each of {tasks} tasks and {sites} kinds of buildings"
+                f"{path}: scores: {name!r} of track {track!r} has {count} entries; expected "
+                f"{expected}, one for each condition in each of {len(sites)} kinds of buildings"
             )
 
 
@@ -88,14 +95,14 @@ def merged(parts: Sequence[Sequence[Score]]) -> list[Score]:
     Raises
     ------
     BenchmarkError
-        When two have an entrant of the same name and track.
+        When two have a policy of the same name and track.
     """
     found: dict[tuple[str, ...], Score] = {}
     for score in (score for part in parts for score in part):
-        key = (score.site, score.condition, score.knows, score.entrant)
+        key = (score.site, score.condition, score.track, score.policy)
         if key in found:
             raise BenchmarkError(
-                f"entrant {score.entrant!r} of track {score.knows!r} is in two results; give one "
+                f"policy {score.policy!r} of track {score.track!r} is in two results; give one "
                 "another name (--name)"
             )
         found[key] = score
@@ -123,7 +130,7 @@ def _score(row: Any, where: str, extent: Extent) -> Score:
 
 def _check_together(score: Score, where: str, extent: Extent) -> None:
     """Check what must hold between the numbers of an entry."""
-    by_building, n = score.spl_by_building, extent.buildings_of.get(score.site, 0)
+    by_building, n = score.spl_by_building, extent.buildings_of.get(cast(Site, score.site), 0)
     flights = n * extent.seeds * flights_of_a_seed(cast(Site, score.site))
     for holds, expected in (
         (n > 0, "site: one of this extent"),
@@ -186,8 +193,8 @@ _ESTIMATE = (_is_estimate, "low <= value <= high, all in [0, 1]")
 _EXPECTED: dict[str, tuple[Callable[[Any], bool], str]] = {
     "site": _one_of(get_args(Site)),
     "condition": _one_of([condition.name for condition in CONDITIONS]),
-    "entrant": (_is_text, "a name of at most 80 printable characters"),
-    "knows": _one_of(get_args(Knows)),
+    "policy": (_is_text, "a name of at most 80 printable characters"),
+    "track": _one_of(get_args(Track)),
     "flights": (lambda v: _is_whole(v) and v > 0, "a positive whole number"),
     "spl_by_building": (_are_parts, "a list of numbers in [0, 1]"),
     "spl": _ESTIMATE,

@@ -84,21 +84,21 @@ def run_benchmark(
     Writes results.json, table.md and page.html. Finished flights are saved in the output folder, so
     that the same command resumes after Ctrl-C or a crash.
     """
-    from rssnav.benchmark.entrants import entrant_of, entrants_of
     from rssnav.benchmark.page import table_rows, write
+    from rssnav.benchmark.policies import policies_of, policy_of
     from rssnav.benchmark.protocol import FULL, QUICK, extent_of
     from rssnav.benchmark.running import run
     from rssnav.benchmark.scores import scores
     from rssnav.benchmark.submissions import merged, read_scores
 
-    entrants = entrants_of(track)
+    specs = policies_of(track)
     if policy is not None:
-        entrants = (entrant_of(policy, track or "RSS", name),)
+        specs = (policy_of(policy, track or "RSS", name),)
     extent = extent_of(QUICK if quick else FULL, split, buildings, plans or (), seeds)
     others = [read_scores(path, extent) for path in beside or ()]
     try:
         with stage_progress() as show:
-            records = run(entrants, extent, out, threads=threads, resume=resume, show=show)
+            records = run(specs, extent, out, threads=threads, resume=resume, show=show)
     except KeyboardInterrupt as interrupt:
         raise KeyboardInterrupt(
             f"interrupted; finished flights are saved in {out}; run the same command again to "
@@ -106,7 +106,7 @@ def run_benchmark(
         ) from interrupt
     found = merged([scores(records), *others])
     files = write(out, found, extent)
-    head = ("buildings", "task", "policy", "knows", "success", "SPL (95 %)")
+    head = ("buildings", "condition", "policy", "track", "success", "SPL (95 %)")
     print_table(head, table_rows(found))
     for file in files:
         say(str(file))

@@ -59,6 +59,15 @@ def generate_plan(
     furniture: Annotated[
         bool, typer.Option("--furniture/--no-furniture", help="Cabinets, shelves and racks.")
     ] = True,
+    connecting_doors: Annotated[
+        float,
+        typer.Option(
+            metavar="CHANCE",
+            min=0.0,
+            max=1.0,
+            help="Chance of a door between two rooms that have none, for more than one way.",
+        ),
+    ] = 0.0,
     force: Annotated[bool, typer.Option("--force", help="Overwrite FILE if it exists.")] = False,
 ) -> None:
     """Write a generated building: rooms, doors, windows, furniture, access points.
@@ -76,6 +85,7 @@ def generate_plan(
             furniture=furniture,
             shape=shape,
             n_transmitters=access_points,
+            connecting_doors=connecting_doors,
         )
     except ValueError as error:  # a wing needs a larger area
         raise typer.BadParameter(f"{error}.", param_hint="--area") from error

@@ -7,25 +7,22 @@ changed, and so on until none does so clearly; a change that others have made ne
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable, Collection
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from floorplans import FloorPlan, Opening, PlanError
+from floorplans import FloorPlan, PlanError
 from raytrace import Scene
 from raytrace.arrays import Bools, Floats, Ints
+from rssnav.doors import Door, doors_of, with_changed
 from rssnav.measurements.calibration import NOISE_DB, Levels, TracedSurvey, residuals_db
 from rssnav.measurements.survey import Survey
 from rssnav.measurements.traced import TraceSettings, traced_dbm
 from rssnav.scenes import scene_of
-
-LEAF, LEAF_M = "wood", 0.04
-"""A shut door where the plan has none to go by, and its thickness [m]."""
 
 BELOW_DB, SILENT_DBM = 10.0, -150.0
 """How far readings without a path are below the weakest one [dB]; their level without any [dBm]."""
@@ -36,13 +33,6 @@ KEPT = 4
 CLEAR = 10.0
 """Difference of the logarithmic likelihood from which a state is told. It is large, since readings
 at neighbouring places err together, and count as independent here."""
-
-
-class Door(NamedTuple):
-    """Number of a door's wall in the plan, and of the opening in the wall."""
-
-    wall: int
-    opening: int
 
 
 @dataclass(frozen=True)
@@ -84,56 +74,6 @@ class DoorState:
             "is_told": self.is_told,
             "evidence": self.evidence if np.isfinite(self.evidence) else None,
         }
-
-
-def doors_of(plan: FloorPlan) -> tuple[Door, ...]:
-    """List the doors of a plan that may be in either state."""
-    found: list[Door] = []
-    for w, wall in enumerate(plan.walls):
-        for o, opening in enumerate(wall.openings):
-            if opening.kind == "door":
-                with suppress(PlanError):
-                    with_changed(plan, [Door(w, o)])
-                    found.append(Door(w, o))
-    return tuple(found)
-
-
-def with_changed(plan: FloorPlan, doors: Collection[Door]) -> FloorPlan:
-    """Return a plan with open doors shut, and shut ones open.
-
-    Raises
-    ------
-    PlanError
-        Where the plan needs a door as it is, such as one to the outside.
-    """
-    material, thickness_m = _leaf(plan)
-
-    def changed(w: int, o: int, opening: Opening) -> Opening:
-        if Door(w, o) not in doors:
-            return opening
-        if opening.material is None:
-            return replace(opening, material=material, thickness_m=thickness_m)
-        return replace(opening, material=None, thickness_m=None)
-
-    walls = tuple(
-        replace(wall, openings=tuple(changed(w, o, each) for o, each in enumerate(wall.openings)))
-        for w, wall in enumerate(plan.walls)
-    )
-    return replace(plan, walls=walls)
-
-
-def _leaf(plan: FloorPlan) -> tuple[str, float | None]:
-    """Return what most shut doors of a plan are made of."""
-    leaves = Counter(
-        (opening.material, opening.thickness_m)
-        for wall in plan.walls
-        for opening in wall.openings
-        if opening.kind == "door" and opening.material is not None
-    )
-    for (material, thickness_m), _ in leaves.most_common(1):
-        assert material is not None
-        return material, thickness_m
-    return LEAF, LEAF_M
 
 
 NO_DOORS: frozenset[Door] = frozenset()

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Bools, Floats, Ints
+from rssnav.doors import Door
 from rssnav.measurements.agreement import Agreement
 from rssnav.measurements.calibration import (
     Calibrated,
@@ -17,7 +18,7 @@ from rssnav.measurements.calibration import (
     fit_what_is_told,
     residuals_db,
 )
-from rssnav.measurements.doors import NO_DOORS, Door, DoorSearch
+from rssnav.measurements.doors import NO_DOORS, DoorSearch
 from rssnav.measurements.hold_out import Fold
 from rssnav.measurements.material_values import MaterialValue, plan_values
 from rssnav.measurements.survey import SurveyError

@@ -1,3 +1,5 @@
+from .door_planning import DoorPlan, plan_by_sight
+from .doors import detour_doors, mission_of_doors
 from .energy import MultirotorEnergy
 from .flights import Flights, fly
 from .layout import Layout
@@ -12,6 +14,7 @@ from .task import ReadingAbove, Task, Within
 
 __all__ = [
     "HOVER",
+    "DoorPlan",
     "Flights",
     "GreedyTable",
     "Layout",
@@ -26,9 +29,12 @@ __all__ = [
     "Seen",
     "Task",
     "Within",
+    "detour_doors",
     "fly",
     "learn_by_model",
+    "mission_of_doors",
     "mission_of_places",
+    "plan_by_sight",
     "plan_mission",
     "spread_places",
 ]

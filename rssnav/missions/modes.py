@@ -85,6 +85,13 @@ class ModeProcess:
             transition = np.kron(one, transition).astype(np.float64)
         return cls(initial, transition)
 
+    def times(self, other: ModeProcess) -> ModeProcess:
+        """Both chains at once, independent of each other: mode ``k * other.n_modes + j``."""
+        return ModeProcess(
+            np.kron(self.initial, other.initial).astype(np.float64),
+            np.kron(self.transition, other.transition).astype(np.float64),
+        )
+
     @property
     def n_modes(self) -> int:
         """Number M of modes."""

@@ -161,17 +161,17 @@ def mission_of_fields(
     modes: ModeProcess | None = None,
     starts: NDArray[np.integer] | None = None,
 ) -> Mission:
-    """Mission of layouts (one, or one a mode), a field (M, S) and a place for each mode.
+    """Mission of G layouts, a field (M, S) and a place for each mode.
 
-    Flights begin in any of the given cells, by default at the plan's start.
+    The first M / G modes have the first layout, and so on. Flights begin in any of the given
+    cells, by default at the plan's start.
     """
     layout, n = layouts[0], len(places)
     if starts is None:
         starts = np.array([layout.nearest(*plan.require_start())])
-    several = len(layouts) > 1
     return Mission(
         layouts=layouts,
-        layout_of_mode=np.arange(n, dtype=np.int64) * several,
+        layout_of_mode=np.arange(n, dtype=np.int64) * len(layouts) // n,
         rss_dbm=rss_dbm,
         distance_m=np.stack([layout.distance_m(x, y) for x, y, _ in places]),
         modes=modes or ModeProcess.steady(n),

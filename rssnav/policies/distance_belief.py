@@ -36,6 +36,8 @@ class DistanceSearch:
         Building; of an unknown one only size, speed, and the UAV's own cells are used.
     plan_known : bool
         Whether the steps are known from the begin.
+    remembers : bool
+        Whether doors that were seen shut are remembered (`StepMemory`).
     targets : {"thompson", "greedy"}
         How a target is chosen.
     power_dbm : float
@@ -58,6 +60,7 @@ class DistanceSearch:
     layout: Layout
     _: KW_ONLY
     plan_known: bool = False
+    remembers: bool = True
     targets: Literal["thompson", "greedy"] = "greedy"
     power_dbm: float = -15.0
     exponents: tuple[float, ...] = (1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.5)
@@ -74,7 +77,7 @@ class DistanceSearch:
         require(self.sigma_db > 0.0, "sigma_db", self.sigma_db, "a positive number [dB]")
         require(0.0 < self.temper <= 1.0, "temper", self.temper, "a number in (0, 1]")
         require(self.steps_to_draw >= 1, "steps_to_draw", self.steps_to_draw, "at least 1")
-        self._steps = StepMemory(self.layout, plan_known=self.plan_known)
+        self._steps = StepMemory(self.layout, plan_known=self.plan_known, remembers=self.remembers)
         cell_m = self.layout.step_length_m[0] / self.layout.speed
         self._drop_db = _drop_db(self._steps.shape, cell_m, np.array(self.exponents))
         count = self._steps.visited.size

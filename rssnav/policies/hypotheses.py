@@ -32,7 +32,7 @@ class Hypotheses:
     Attributes
     ----------
     layout : Layout
-        Plan with S cells, all steps known.
+        Plan with S cells, all steps known; where doors differ, all are open.
     rss_dbm : (S, H) float64
         RSS of each cell under each hypothesis [dBm].
     found : (S, H) bool
@@ -41,6 +41,8 @@ class Hypotheses:
         Places [m].
     transition : (H, H) float64 or None
         Probability of another place after a second; None for a transmitter that stays.
+    layouts : tuple of Layout
+        Steps under each hypothesis, where doors differ; empty where they are those of ``layout``.
     hops : (S, H) int32
         Fewest steps from each cell to where it would be found.
     """
@@ -50,6 +52,7 @@ class Hypotheses:
     found: NDArray[np.bool_]
     position: NDArray[np.float64]
     transition: NDArray[np.float64] | None = None
+    layouts: tuple[Layout, ...] = ()
     hops: NDArray[np.int32] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -57,25 +60,23 @@ class Hypotheses:
         for name in ("rss_dbm", "found"):
             if getattr(self, name).shape != shape:
                 raise ValueError(f"{name}: shape {getattr(self, name).shape}, expected {shape}")
-        object.__setattr__(self, "hops", _hops(self.layout, self.found))
+        layouts = self.layouts or (self.layout,) * shape[1]
+        if len(layouts) != shape[1]:
+            raise ValueError(f"layouts: {len(layouts)}, expected {shape[1]}, or none")
+        columns = [_hops(layouts[h], self.found[:, h]) for h in range(shape[1])]
+        object.__setattr__(self, "hops", np.stack(columns, axis=1))
 
     @classmethod
     def of_mission(cls, mission: Mission, task: Task) -> Hypotheses:
-        """Return the modes of a mission: the true places and maps, and how places change.
-
-        Raises
-        ------
-        ValueError
-            For a mission with doors, whose steps change.
-        """
-        if len(mission.layouts) > 1:
-            raise ValueError(f"mission {mission.name!r}: hypotheses need steps that do not change")
+        """Return the modes of a mission: true places, states of doors and maps, and their chain."""
+        several = len(mission.layouts) > 1
         return cls(
             layout=mission.layout,
             rss_dbm=np.ascontiguousarray(mission.rss_dbm.T),
             found=np.ascontiguousarray(task.goal.cells(mission).T),
             position=mission.source,
             transition=mission.modes.transition if mission.modes.changes else None,
+            layouts=tuple(mission.layouts[g] for g in mission.layout_of_mode) if several else (),
         )
 
     @classmethod
@@ -141,13 +142,10 @@ def _dominating(layout: Layout) -> NDArray[np.int64]:
 
 
 def _hops(layout: Layout, found: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Fewest steps from each cell to the cells of each hypothesis, shape (S, H)."""
+    """Fewest steps from each cell to any of some cells, shape (S,)."""
     size = layout.n_states
     state, action = np.nonzero(layout.action_mask)
     arrived = layout.next_state[state, action]
     back = coo_array((np.ones(state.size), (arrived, state)), shape=(size, size)).tocsr()
-    hops = np.empty(found.shape, dtype=np.int32)
-    for h in range(found.shape[1]):
-        steps = dijkstra(back, indices=np.flatnonzero(found[:, h]), unweighted=True, min_only=True)
-        hops[:, h] = np.where(np.isfinite(steps), steps, NO_WAY)
-    return hops
+    steps = dijkstra(back, indices=np.flatnonzero(found), unweighted=True, min_only=True)
+    return np.where(np.isfinite(steps), steps, NO_WAY).astype(np.int32)

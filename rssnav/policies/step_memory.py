@@ -22,6 +22,9 @@ class StepMemory:
         Size of the grid, cells and speed; its steps are used only if the plan is known.
     plan_known : bool
         Whether all steps are known from the begin.
+    remembers : bool
+        Whether steps that were seen to be impossible stay so; otherwise only those at the UAV's
+        cell are known to be.
 
     Attributes
     ----------
@@ -35,11 +38,12 @@ class StepMemory:
         Fewest steps from the UAV to each grid cell (-1: no way), and the first action there.
     """
 
-    def __init__(self, layout: Layout, *, plan_known: bool) -> None:
+    def __init__(self, layout: Layout, *, plan_known: bool, remembers: bool = True) -> None:
         self.shape, n_x = layout.shape, layout.shape[1]
         count = self.shape[0] * n_x
         self.grid_cell = (layout.cell[:, 0] * n_x + layout.cell[:, 1]).astype(np.int64)
         self._neighbour = _neighbours(self.shape, layout.speed)
+        self._remembers = remembers
         self._assumed = self._neighbour >= 0
         if plan_known:
             self._assumed = np.zeros((count, 8), dtype=np.bool_)
@@ -58,6 +62,8 @@ class StepMemory:
         """Note the possible actions in a cell of the layout; return its grid cell."""
         here = int(self.grid_cell[cell])
         self.visited[here] = True
+        if not self._remembers:
+            self.possible[:] = self._assumed
         self.possible[here] = mask
         there = self._neighbour[here]
         inside = there >= 0

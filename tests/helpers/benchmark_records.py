@@ -6,7 +6,7 @@ from rssnav.benchmark.protocol import CONDITIONS, Extent
 from rssnav.benchmark.running import Record
 
 SMALL = Extent(generated=2, paper=False, seeds=1)
-"""Of two buildings with three flights in each task."""
+"""Of two buildings with three flights in each condition."""
 
 
 def record(**changes) -> Record:
@@ -20,17 +20,17 @@ def record(**changes) -> Record:
         "turns": [1, 2, 3],
         "energy_kj": [1.0, 2.0, 6.0],
     }
-    who = {"entrant": "a", "knows": "RSS", "condition": "2 dB", "site": "test", "building": "b"}
+    who = {"policy": "a", "track": "RSS", "condition": "2 dB", "site": "test", "building": "b"}
     return Record(**{**who, **flights, "collisions": 4, "cpu_s": 0.009, **changes})
 
 
 def records() -> list[Record]:
-    """Flights in all tasks and both buildings of `SMALL`."""
+    """Flights in all conditions and both buildings of `SMALL`."""
     return [
         made
-        for task in CONDITIONS
+        for condition in CONDITIONS
         for made in (
-            record(condition=task.name),
-            record(condition=task.name, building="c", steps=[300, 30, 40]),
+            record(condition=condition.name),
+            record(condition=condition.name, building="c", steps=[300, 30, 40]),
         )
     ]

@@ -295,9 +295,22 @@ def test_hypotheses_of_a_plan_are_at_most_a_step_from_every_cell_and_where_they_
     assert maps.hops.max() < NO_WAY
 
 
-def test_doors_are_refused_with_the_reason():
-    with pytest.raises(ValueError, match="steps that do not change"):
-        Hypotheses.of_mission(room_mission(), TASK)
+def test_without_memory_a_step_that_was_seen_blocked_is_tried_again():
+    layout = open_room().layout
+    for remembers in (True, False):
+        memory = StepMemory(layout, plan_known=True, remembers=remembers)
+        memory.begin()
+        cell = int(np.argmax(layout.action_mask.sum(axis=1)))
+        blocked = layout.action_mask[cell].copy()
+        action = int(np.argmax(blocked))
+        beyond = layout.next_state[cell, action]
+        blocked[action] = False
+        memory.see(cell, blocked)
+        assert not memory.possible[memory.grid_cell[cell], action]
+        other = int(layout.next_state[cell, np.flatnonzero(blocked)[-1]])
+        memory.see(other, layout.action_mask[other])
+        assert memory.possible[memory.grid_cell[cell], action] != remembers
+        assert memory.possible[memory.grid_cell[beyond], (action + 4) % 8] != remembers
 
 
 @pytest.mark.parametrize(

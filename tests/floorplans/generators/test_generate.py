@@ -91,6 +91,29 @@ def test_the_same_seed_gives_the_same_plan(kind: str) -> None:
 
 
 @kinds
+@pytest.mark.parametrize("seed", range(4))
+def test_connecting_doors_leave_all_else_as_it_is(kind: str, seed: int) -> None:
+    """Walls are the same; one without an opening may have a door, and no other changes."""
+    without = generate(kind, seed, furniture=False)
+    plan = generate(kind, seed, furniture=False, connecting_doors=1.0)
+    assert generate(kind, seed, furniture=False, connecting_doors=0.0).sha256 == without.sha256
+    more = 0
+    for wall, before in zip(plan.walls, without.walls, strict=True):
+        assert (wall.start, wall.end, wall.material) == (before.start, before.end, before.material)
+        if wall != before:
+            assert not before.openings
+            assert [opening.kind for opening in wall.openings] == ["door"]
+            more += 1
+    assert more > 0 or kind == "hall"
+    assert inspect(PlanFile.of(generate(kind, seed, connecting_doors=0.5))) == ()
+
+
+def test_a_chance_of_doors_is_from_0_to_1() -> None:
+    with pytest.raises(ValueError, match=r"connecting_doors = 1\.5: expected a chance from 0 to 1"):
+        generate("office", 1, connecting_doors=1.5)
+
+
+@kinds
 def test_furniture_is_clutter_clear_of_walls(kind: str) -> None:
     plan = generate(kind, 3)
     clutter = [wall for wall in plan.walls if wall.kind == "clutter"]

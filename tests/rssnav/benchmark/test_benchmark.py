@@ -13,11 +13,19 @@ from benchmark_records import record
 from small_missions import room_mission
 
 import floorplans
-from rssnav.benchmark.buildings import GOAL, LEAST_STEPS, Building, generated, own, paper
-from rssnav.benchmark.entrants import ENTRANTS, Briefing, Entrant, Guarded, entrant_of
+from rssnav.benchmark.buildings import (
+    DOORS,
+    GOAL,
+    LEAST_STEPS,
+    Building,
+    generated,
+    own,
+    paper,
+)
 from rssnav.benchmark.errors import BenchmarkError
 from rssnav.benchmark.frozen import FINGERPRINTS
-from rssnav.benchmark.protocol import CONDITIONS, FULL, Extent, extent_of
+from rssnav.benchmark.policies import POLICIES, Briefing, Guarded, PolicySpec, policy_of
+from rssnav.benchmark.protocol import CONDITIONS, FULL, Extent, conditions_of, extent_of
 from rssnav.benchmark.running import run, shortest
 from rssnav.benchmark.scores import WITHIN_S, scores, spl
 from rssnav.missions import HOVER, Flights, ModeProcess, RandomPolicy, Task, fly
@@ -25,7 +33,7 @@ from rssnav.policies import Hypotheses
 
 CONDITION = {condition.name: condition for condition in CONDITIONS}
 SMALL = Extent(split="train", generated=1, paper=False, seeds=1)
-ORACLES = [entrant for entrant in ENTRANTS if entrant.knows == "world"]
+ORACLES = [policy for policy in POLICIES if policy.track == "world"]
 
 
 @pytest.fixture(scope="module")
@@ -95,21 +103,21 @@ def test_the_shortest_flight_is_that_of_one_who_knows_the_jumps_beforehand():
 def test_no_flight_beats_the_clairvoyant(mission, building, name):
     world, task = CONDITION[name].world(mission), CONDITION[name].task
     hops = Hypotheses.of_mission(mission, task).hops
-    for entrant in (ORACLES[0], next(e for e in ENTRANTS if e.name == "frontier search")):
-        policy = entrant.make(Briefing(CONDITION[name], entrant.knows, building, mission))
-        sight = CONDITION[name].observation(world_seen=entrant.knows == "world")
+    for spec in (ORACLES[0], next(e for e in POLICIES if e.name == "frontier search")):
+        policy = spec.make(Briefing(CONDITION[name], spec.track, building, mission))
+        sight = CONDITION[name].observation(world_seen=spec.track == "world")
         flights = fly(world, task, sight, policy, episodes=20)
         assert np.all(shortest(flights, hops)[flights.found] <= flights.actions[flights.found])
 
 
 def test_oracles_have_an_spl_of_one_and_the_least_energy(folder):
-    walk = next(entrant for entrant in ENTRANTS if entrant.knows == "places")
+    walk = next(policy for policy in POLICIES if policy.track == "places")
     flown = run([*ORACLES, walk], SMALL, folder, threads=1)
-    by_name = {(r.entrant, r.condition): r for r in flown}
+    by_name = {(r.policy, r.condition): r for r in flown}
     for name in ("static", "battery"):
         assert spl(by_name["oracle, fewest steps", name]) == 1.0
         assert all(by_name["oracle, least energy", name].found)
-    energy = {r.entrant: np.array(r.energy_kj) for r in flown if r.condition == "static"}
+    energy = {r.policy: np.array(r.energy_kj) for r in flown if r.condition == "static"}
     least = energy.pop("oracle, least energy")
     for others in energy.values():
         assert np.all(least <= others + 1e-9)
@@ -141,17 +149,56 @@ def test_another_building_than_the_frozen_one_is_refused(monkeypatch):
 
 
 def test_a_policy_is_told_what_its_track_allows(building, mission):
-    def briefing(knows):
-        return Briefing(CONDITION["static"], knows, building, mission)
+    def briefing(track):
+        return Briefing(CONDITION["static"], track, building, mission)
 
     assert np.all(briefing("RSS").layout.next_state == -1)
     assert np.any(briefing("plan").layout.next_state >= 0)
     assert briefing("places").hypotheses.position.shape == (len(building.places), 2)
-    for knows in ("RSS", "plan"):
+    for track in ("RSS", "plan"):
         with pytest.raises(ValueError, match="has no maps"):
-            _ = briefing(knows).hypotheses
+            _ = briefing(track).hypotheses
         with pytest.raises(ValueError, match="must not see it"):
-            briefing(knows).world_of("world")
+            briefing(track).world_of("world")
+
+
+@pytest.fixture(scope="module")
+def doors(maps):
+    """Building whose doors matter, and its mission."""
+    *_, building = generated("validation", 3)
+    return building.with_doors, building.with_doors.mission(maps)
+
+
+def test_doors_that_open_and_close_cut_no_cell_off_and_lengthen_ways(doors):
+    building, mission = doors
+    assert len(building.doors) == DOORS
+    assert mission.n_modes == 3 * 2**DOORS
+    for layout in mission.layouts:
+        assert layout.reachable(0).size == building.layout.n_states
+    hops = Hypotheses.of_mission(mission, Task(GOAL)).hops[mission.starts]
+    assert hops[:, :3].mean() < hops[:, -3:].mean()  # all open, all closed
+
+
+def test_doors_by_sight_cost_more_than_known_ones_and_memory_saves_flights(doors):
+    building, mission = doors
+    condition = CONDITION["doors"]
+    flown = {}
+    for name in ("oracle, fewest steps", "oracle, doors by sight", "distance law, greedy",
+                 "distance law, doors forgotten"):  # fmt: skip
+        spec = next(s for s in POLICIES if s.name == name and s.track != "RSS")
+        policy = spec.make(Briefing(condition, spec.track, building, mission))
+        sight = condition.observation(world_seen=spec.track == "world")
+        flown[name] = fly(mission, condition.task, sight, policy, episodes=60)
+    steps = {name: flights.steps.mean() for name, flights in flown.items()}
+    assert steps["oracle, fewest steps"] < steps["oracle, doors by sight"]
+    assert flown["oracle, doors by sight"].found.all()
+    assert flown["distance law, greedy"].found.all()
+    assert flown["distance law, doors forgotten"].found.mean() < 0.9
+
+
+def test_the_papers_buildings_have_no_doors_that_open_and_close():
+    assert CONDITION["doors"] not in conditions_of("paper")
+    assert conditions_of("test") == CONDITIONS
 
 
 class Stubborn(RandomPolicy):
@@ -159,6 +206,19 @@ class Stubborn(RandomPolicy):
 
     def act(self, observation, mask):
         return 0
+
+
+class Lost(RandomPolicy):
+    """Asks for an action that there is not."""
+
+    def act(self, observation, mask):
+        return 99
+
+
+def test_the_flight_that_loads_kernels_is_neither_counted_nor_scored(folder):
+    for flown in run([PolicySpec("lost", "RSS", lambda _: Lost())], SMALL, folder, threads=1):
+        assert len(flown.steps) == 3
+        assert flown.collisions == sum(flown.actions)
 
 
 def test_impossible_actions_are_counted_and_become_hovering():
@@ -171,29 +231,29 @@ def test_impossible_actions_are_counted_and_become_hovering():
     assert policy.act(None, np.zeros(8, dtype=bool)) == HOVER
 
 
-WALK = Entrant("walk", "RSS", lambda _: RandomPolicy())
-EAST = Entrant("east", "RSS", lambda _: Stubborn())
+WALK = PolicySpec("walk", "RSS", lambda _: RandomPolicy())
+EAST = PolicySpec("east", "RSS", lambda _: Stubborn())
 
 
 def test_an_interrupted_run_is_resumed_with_the_same_result(folder):
     def interrupted(_):
         raise KeyboardInterrupt
 
-    broken = Entrant("east", "RSS", interrupted)
+    broken = PolicySpec("east", "RSS", interrupted)
     whole = run([WALK, EAST], SMALL, folder, threads=1)
     shutil.rmtree(folder / "flights")
     with pytest.raises(KeyboardInterrupt):
         run([WALK, broken], SMALL, folder, threads=1)
-    unflyable = Entrant("walk", "RSS", interrupted)  # what is finished is not flown again
+    unflyable = PolicySpec("walk", "RSS", interrupted)  # what is finished is not flown again
     parts = run([unflyable, EAST], SMALL, folder, threads=1)
     assert [replace(r, cpu_s=0.0) for r in parts] == [replace(r, cpu_s=0.0) for r in whole]
 
 
 def test_several_processes_give_the_same_as_one(folder):
     extent = replace(SMALL, generated=2)
-    alone = run(ENTRANTS[:1], extent, folder, threads=1)
+    alone = run(POLICIES[:1], extent, folder, threads=1)
     shutil.rmtree(folder / "flights")
-    together = run(ENTRANTS[:1], extent, folder, threads=2)
+    together = run(POLICIES[:1], extent, folder, threads=2)
     assert [r.building for r in together] == sorted(r.building for r in together)
     assert [replace(r, cpu_s=0.0) for r in together] == [replace(r, cpu_s=0.0) for r in alone]
 
@@ -229,6 +289,18 @@ def test_plans_of_ones_own_have_transmitters_in_reach(tmp_path):
     assert Hypotheses.of_mission(mission, Task(GOAL)).hops.max() < 1000
 
 
+def test_plans_of_ones_own_are_compared_by_content(tmp_path):
+    text = floorplans.dumps(floorplans.load("flat"))
+    one, other = tmp_path / "one.toml", tmp_path / "other.toml"
+    one.write_text(text)
+    other.write_text(text)
+    extents = [extent_of(FULL, "test", 0, (file,)) for file in (one, other, "flat")]
+    assert extents[0] == extents[1] == extents[2]
+    assert extents[0].written == extents[1].written
+    other.write_text(text.replace('"brick"', '"concrete"'))
+    assert extent_of(FULL, "test", 0, (other,)) != extents[0]
+
+
 def test_what_is_no_policy_is_named():
     with pytest.raises(BenchmarkError, match="policy: 3; expected an object with a method begin"):
         Guarded(3)
@@ -236,9 +308,9 @@ def test_what_is_no_policy_is_named():
 
 def test_unknown_policies_tracks_and_splits_are_named():
     with pytest.raises(BenchmarkError, match="expected module:function"):
-        entrant_of("nowhere:make", "RSS")
+        policy_of("nowhere:make", "RSS")
     with pytest.raises(BenchmarkError, match="track"):
-        entrant_of("json:loads", "everything")
+        policy_of("json:loads", "everything")
     with pytest.raises(BenchmarkError, match="split"):
         extent_of(FULL, "dev", None, ())
     with pytest.raises(BenchmarkError, match="0 to 50"):

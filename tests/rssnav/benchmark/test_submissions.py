@@ -47,9 +47,9 @@ DAMAGE = {
     "no table": (lambda c: c.update(scores=[3]), r"scores\[0\]: expected a table"),
     "missing": (lambda c: c["scores"][0].pop("spl"), r"scores\[0\]: spl is missing"),
     "unknown": (of_score("speed", 1), "speed: no such key"),
-    "track": (of_score("knows", "all"), "knows: 'all'; expected 'RSS' or"),
-    "task": (of_score("condition", "9 dB"), "condition: '9 dB'"),
-    "name": (of_score("entrant", "a\n| b"), "printable"),
+    "track": (of_score("track", "all"), "track: 'all'; expected 'RSS' or"),
+    "condition": (of_score("condition", "9 dB"), "condition: '9 dB'"),
+    "name": (of_score("policy", "a\n| b"), "printable"),
     "text": (of_score("turns", "3"), "turns: '3'"),
     "bool": (of_score("collisions", True), "collisions: True"),
     "nan": (of_score("energy_kj", float("nan")), "energy_kj: nan"),
@@ -58,7 +58,7 @@ DAMAGE = {
     "a building left out": (of_score("spl_by_building", [0.5]), "spl_by_building: 2 numbers"),
     "flights left out": (of_score("flights", 3), "flights: 6"),
     "a site left out": (of_score("site", "paper"), "site: one of this extent"),
-    "a task left out": (lambda c: c["scores"].pop(), "has 4 entries; expected 5"),
+    "a condition left out": (lambda c: c["scores"].pop(), "has 5 entries; expected 6"),
     "huge": (of_score("turns", 10**400), "turns: 1000"),
     "wrong interval": (of_score("spl", {"value": 0.1, "low": 0.2, "high": 0.3}), "low <= value"),
     "wrong mean": (of_score("spl", {"value": 0.1, "low": 0.0, "high": 0.3}), "the mean of"),
@@ -102,7 +102,7 @@ def test_a_quick_result_is_not_mixed_with_a_full_one(file):
 
 def test_results_of_several_are_merged_unless_they_have_the_same_name(file):
     _, found = file
-    other = [replace(score, entrant="other") for score in found]
+    other = [replace(score, policy="other") for score in found]
     assert merged([found, other]) == [*found, *other]
     with pytest.raises(BenchmarkError, match="another name"):
         merged([found, found])
@@ -110,7 +110,7 @@ def test_results_of_several_are_merged_unless_they_have_the_same_name(file):
 
 def test_tables_hold_all_entrants_best_first_and_names_are_escaped(file, tmp_path):
     _, found = file
-    best = replace(found[0], entrant="<b>|best", spl=replace(found[0].spl, value=0.9, high=0.9))
+    best = replace(found[0], policy="<b>|best", spl=replace(found[0].spl, value=0.9, high=0.9))
     rows = [line for line in as_markdown([*found, best]).splitlines() if line.startswith("| ")]
     assert [row.count("|") for row in rows] == [rows[0].count("|")] * len(rows)
     assert rows[2].startswith("| &lt;b&gt;/best |")

@@ -10,17 +10,10 @@ from small_surveys import TRANSMITTERS, room, survey_of
 
 from floorplans import FloorPlan, Opening
 from raytrace import TraceConfig
+from rssnav.doors import LEAF, Door, doors_of, with_changed
 from rssnav.measurements.calibrate import Calibration, calibrate
 from rssnav.measurements.calibration_page import calibration_page
-from rssnav.measurements.doors import (
-    CLEAR,
-    LEAF,
-    Door,
-    DoorSearch,
-    DoorState,
-    doors_of,
-    with_changed,
-)
+from rssnav.measurements.doors import CLEAR, DoorSearch, DoorState
 from rssnav.measurements.survey import Survey
 from rssnav.measurements.traced import TraceSettings, traced_dbm
 from rssnav.scenes import scene_of

@@ -19,6 +19,7 @@ from rssnav.benchmark.buildings import Building
 from rssnav.benchmark.errors import BenchmarkError, check
 from rssnav.benchmark.protocol import Condition
 from rssnav.missions import HOVER, Layout, Mission, Policy, RandomPolicy, Seen, plan_mission
+from rssnav.missions.door_planning import plan_by_sight
 from rssnav.policies import (
     DistanceSearch,
     FrontierSearch,
@@ -31,8 +32,8 @@ from rssnav.policies import (
     Qmdp,
 )
 
-Knows = Literal["RSS", "plan", "maps", "places", "world"]
-"""Tracks: what a policy is told beside the task, its own cell and the size of the building."""
+Track = Literal["RSS", "plan", "maps", "places", "world"]
+"""What a policy is told beside the condition, its own cell and the size of the building."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +44,7 @@ class Briefing:
     """
 
     condition: Condition
-    knows: Knows
+    track: Track
     _building: Building = field(repr=False)
     _mission: Mission = field(repr=False)
 
@@ -51,10 +52,11 @@ class Briefing:
     def layout(self) -> Layout:
         """Size of the grid and positions of cells; the steps (S, 8) only if the plan is known.
 
-        Without the plan all steps are -1: a policy learns them from the masks.
+        Without the plan all steps are -1: a policy learns them from the masks. Where doors open and
+        close, the steps are those with all of them open.
         """
         layout = self._building.layout
-        if self.knows == "RSS":
+        if self.track == "RSS":
             return replace(layout, next_state=np.full_like(layout.next_state, -1))
         return layout
 
@@ -63,39 +65,40 @@ class Briefing:
         """Places of the transmitter with maps: a step from each other, or where it truly may be.
 
         The track "maps" has coarse maps of places all over the building; "places" has the true
-        places, their true maps, and how the transmitter moves among them.
+        places, their true maps in each state of the doors, and how the transmitter moves among
+        them.
         """
-        if self.knows == "maps":
+        if self.track == "maps":
             return self._building.hypotheses
-        if self.knows == "places":
+        if self.track == "places":
             return Hypotheses.of_mission(self.world_of("places"), self.condition.task)
-        raise ValueError(f"hypotheses: a policy of the track {self.knows!r} has no maps")
+        raise ValueError(f"hypotheses: a policy of the track {self.track!r} has no maps")
 
-    def world_of(self, track: Knows) -> Mission:
+    def world_of(self, track: Track) -> Mission:
         """Return the mission itself, to a policy of this track."""
-        if self.knows != track:
-            raise ValueError(f"world: a policy of the track {self.knows!r} must not see it")
+        if self.track != track:
+            raise ValueError(f"world: a policy of the track {self.track!r} must not see it")
         return self.condition.world(self._mission)
 
 
 @dataclass(frozen=True)
-class Entrant:
-    """A policy that takes part.
+class PolicySpec:
+    """How a policy that takes part is made.
 
     Parameters
     ----------
     name : str
         In tables and files.
-    knows : {"RSS", "plan", "maps", "places", "world"}
+    track : {"RSS", "plan", "maps", "places", "world"}
         Track.
     make : callable
-        Policy for a building and task, from a `Briefing`.
+        Policy for a building and condition, from a `Briefing`.
     source : str
         Hash of its program; flights of another program are not resumed.
     """
 
     name: str
-    knows: Knows
+    track: Track
     make: Callable[[Briefing], Policy]
     source: str = version("rssnav")
 
@@ -127,6 +130,14 @@ class Oracle:
         return int(np.argmax(rss_dbm))
 
 
+def _by_sight(briefing: Briefing) -> Policy:
+    """Oracle for the transmitter alone: doors are known only where they were seen."""
+    mission = briefing.world_of("world")
+    if not mission.closed.size:
+        return Oracle("steps", briefing)
+    return plan_by_sight(mission, briefing.condition.task).policy
+
+
 def _random(_: Briefing) -> Policy:
     return RandomPolicy()
 
@@ -147,31 +158,37 @@ def _on_places(make: Callable[..., Policy], briefing: Briefing) -> Policy:
 _LAW = partial(_on_layout, DistanceSearch)
 _THOMPSON = {"targets": "thompson"}
 
-ENTRANTS = (
-    Entrant("random walk", "RSS", _random),
-    Entrant("frontier search", "RSS", partial(_on_layout, FrontierSearch)),
-    Entrant(
+POLICIES = (
+    PolicySpec("random walk", "RSS", _random),
+    PolicySpec("frontier search", "RSS", partial(_on_layout, FrontierSearch)),
+    PolicySpec(
         "Gaussian process", "RSS", partial(_on_layout, GaussianProcessSearch, steps_to_choose=1)
     ),
-    Entrant("distance law, Thompson", "RSS", partial(_LAW, steps_to_draw=40, **_THOMPSON)),
-    Entrant("distance law, greedy", "RSS", partial(_LAW, steps_to_draw=1)),
-    Entrant("distance law, greedy", "plan", partial(_LAW, steps_to_draw=1, plan_known=True)),
-    Entrant("particle filter", "maps", partial(_on_maps, MapParticleFilter)),
-    Entrant("maps, Thompson", "maps", partial(_on_maps, MapSearch, **_THOMPSON)),
-    Entrant("maps, greedy", "maps", partial(_on_maps, MapSearch)),
-    Entrant("QMDP", "maps", partial(_on_maps, Qmdp)),
-    Entrant("infotaxis", "maps", partial(_on_maps, Infotaxis, space_aware=False)),
-    Entrant("space-aware infotaxis", "maps", partial(_on_maps, Infotaxis)),
-    Entrant("maps, greedy", "places", partial(_on_places, MapSearch)),
-    Entrant("QMDP", "places", partial(_on_places, Qmdp)),
-    Entrant("oracle, fewest steps", "world", partial(Oracle, "steps")),
-    Entrant("oracle, least energy", "world", partial(Oracle, "energy")),
+    PolicySpec("distance law, Thompson", "RSS", partial(_LAW, steps_to_draw=40, **_THOMPSON)),
+    PolicySpec("distance law, greedy", "RSS", partial(_LAW, steps_to_draw=1)),
+    PolicySpec("distance law, greedy", "plan", partial(_LAW, steps_to_draw=1, plan_known=True)),
+    PolicySpec(
+        "distance law, doors forgotten",
+        "plan",
+        partial(_LAW, steps_to_draw=1, plan_known=True, remembers=False),
+    ),
+    PolicySpec("particle filter", "maps", partial(_on_maps, MapParticleFilter)),
+    PolicySpec("maps, Thompson", "maps", partial(_on_maps, MapSearch, **_THOMPSON)),
+    PolicySpec("maps, greedy", "maps", partial(_on_maps, MapSearch)),
+    PolicySpec("QMDP", "maps", partial(_on_maps, Qmdp)),
+    PolicySpec("infotaxis", "maps", partial(_on_maps, Infotaxis, space_aware=False)),
+    PolicySpec("space-aware infotaxis", "maps", partial(_on_maps, Infotaxis)),
+    PolicySpec("maps, greedy", "places", partial(_on_places, MapSearch)),
+    PolicySpec("QMDP", "places", partial(_on_places, Qmdp)),
+    PolicySpec("oracle, fewest steps", "world", partial(Oracle, "steps")),
+    PolicySpec("oracle, doors by sight", "world", _by_sight),
+    PolicySpec("oracle, least energy", "world", partial(Oracle, "energy")),
 )
 """The policies that come with the benchmark. Their settings were chosen in buildings of the split
 "train"."""
 
 
-def entrants_of(track: str | None) -> tuple[Entrant, ...]:
+def policies_of(track: str | None) -> tuple[PolicySpec, ...]:
     """Policies that come with the benchmark: all, or those of a track.
 
     Raises
@@ -179,23 +196,23 @@ def entrants_of(track: str | None) -> tuple[Entrant, ...]:
     BenchmarkError
         For an unknown track.
     """
-    return tuple(e for e in ENTRANTS if track is None or e.knows == _known(track))
+    return tuple(spec for spec in POLICIES if track is None or spec.track == _known(track))
 
 
-def _known(track: str) -> Knows:
-    check(track in get_args(Knows), "track", track, ", ".join(map(repr, get_args(Knows))))
-    return cast(Knows, track)
+def _known(track: str) -> Track:
+    check(track in get_args(Track), "track", track, ", ".join(map(repr, get_args(Track))))
+    return cast(Track, track)
 
 
-def entrant_of(text: str, knows: str, name: str | None = None) -> Entrant:
-    """Entrant of a function ``module:function`` that makes a policy from a `Briefing`.
+def policy_of(text: str, track: str, name: str | None = None) -> PolicySpec:
+    """Specification of a function ``module:function`` that makes a policy from a `Briefing`.
 
     Raises
     ------
     BenchmarkError
         Unless there is such a function and track.
     """
-    track = _known(knows)
+    known = _known(track)
     module, _, function = text.partition(":")
     if "" not in sys.path:
         sys.path.insert(0, "")  # modules of the current folder
@@ -209,7 +226,7 @@ def entrant_of(text: str, knows: str, name: str | None = None) -> Entrant:
         ) from error
     file = getattr(program, "__file__", None)
     source = sha256(Path(file).read_bytes()).hexdigest() if file else ""
-    return Entrant(name or function, track, make, source)
+    return PolicySpec(name or function, known, make, source)
 
 
 class Guarded:
