@@ -11,6 +11,7 @@ from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.lanes import (
     Lanes,
     absolute,
+    any_of,
     floor,
     gather_pairs1,
     lanes_of,
@@ -19,6 +20,7 @@ from raytrace.kernels.lanes import (
     minimum,
     sqrt,
 )
+from raytrace.kernels.losses import NEGLIGIBLE
 from raytrace.kernels.unfolding import NORMAL, REFLECT_WALL, SURFACE, TYPE, Leg
 from raytrace.kernels.utd import wedge_cotangents
 from raytrace.kernels.wedge import FaceAngles, Wedge
@@ -27,6 +29,12 @@ SHEET_POWER, SHEET_POWER_THROUGH_WALLS, WEDGE_POWER = 1.0, 2.25, 4.0
 """Largest power behind an edge over that of a free path as long: two terms of half its field; the
 same where a sheet's shadow lacks at most twice the field, that of the air less the transmitted one;
 four terms (see `wedge_bound`)."""
+
+
+@jit(inline=True)
+def at_one_metre(tables: FieldTables) -> float:
+    """Bound on the received fraction of the power over 1 m."""
+    return (tables.wavelength / (4.0 * math.pi)) ** 2 * tables.peak_gain
 
 
 @jit(inline=True)
@@ -94,6 +102,32 @@ def image_bound(building: Building, tables: FieldTables, slope: Lanes, bounces: 
     cos_squared = 1.0 / (1.0 + slope * slope)
     sine = absolute(slope) * sqrt(cos_squared)
     return cos_squared * bounce_bound(building, tables, sine, bounces)
+
+
+@jit(inline=True, fast=True)
+def all_from(
+    ranks: Floats, k: int, kept: Lanes, distance: Lanes, least: Lanes
+) -> tuple[Lanes, bool]:
+    """Bound on the power by way k and all weaker ones of as many reflections to an edge.
+
+    Parameters
+    ----------
+    ranks, k
+        See `losses.LossLimit`.
+    kept
+        Largest fraction of the power at 1 m in free space that is kept otherwise.
+    distance, least
+        Behind the edge [m], and the power thresholds.
+
+    Returns
+    -------
+    power, is_negligible
+        The bound, and whether each of the ways is far below the threshold everywhere.
+    """
+    longest = ranks[k, 3]
+    nearer = longest / (distance + longest)
+    power = kept * nearer * nearer
+    return power * ranks[k, 1], not any_of(power * ranks[k, 0] >= least * NEGLIGIBLE)
 
 
 LENGTHS = 64

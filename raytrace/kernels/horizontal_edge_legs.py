@@ -78,6 +78,9 @@ class HorizontalEdgeBeams(NamedTuple):
         The edge, all beams from the transmitter, and those that meet the edge.
     strips, hits, seen
         Beams from the edge, and the receivers visible from them (see `strip_hits.hit_from_strip`).
+    ranks, over_edge
+        (n, 4), (n, max_reflections + 1, DISTANCES + 1) bounds on the power by each image, see
+        `losses.LossLimit` and `bounds_over_edge`; n = 0 where no loss limits the beams.
     """
 
     edge: HorizontalEdgeArrays
@@ -86,6 +89,8 @@ class HorizontalEdgeBeams(NamedTuple):
     strips: StripTree
     hits: Hits
     seen: Floats
+    ranks: Floats
+    over_edge: Floats
 
 
 class EdgeWorkspace(NamedTuple):

@@ -8,11 +8,18 @@ import numpy as np
 from raytrace.arrays import Floats
 from raytrace.kernels.beams import ORDER, Tree
 from raytrace.kernels.blocks import Block, next_block
-from raytrace.kernels.bounds import bounce_bound, free_space, wedge_bound
+from raytrace.kernels.bounds import (
+    all_from,
+    at_one_metre,
+    bounce_bound,
+    free_space,
+    wedge_bound,
+)
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import is_stopped
+from raytrace.kernels.horizontal_edge_bounds import distance_bins
 from raytrace.kernels.horizontal_edge_field import (
     angles_at_edge,
     angles_from_wall,
@@ -34,6 +41,7 @@ from raytrace.kernels.lanes import (
     Mask,
     absolute,
     any_of,
+    gather_pairs1,
     lanes_of,
     load,
     maximum,
@@ -42,6 +50,7 @@ from raytrace.kernels.lanes import (
     store,
     where,
 )
+from raytrace.kernels.losses import NEGLIGIBLE
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.records import Record, record_paths
 from raytrace.kernels.strips import FRACTION, StripTree
@@ -56,6 +65,7 @@ from raytrace.kernels.workspace import (
     count_path,
     has_threshold,
     least_powers,
+    leave_out,
 )
 
 OFFSETS_OF_LEGS_M = (
@@ -91,16 +101,21 @@ class Seen(NamedTuple):
 
 
 @jit(inline=True)
-def seen_from(edge: HorizontalEdgeArrays, seen: Floats, block: Block, work: EdgeWorkspace) -> Seen:
-    """Receivers of a block in the frame of an edge; sets `work.across`."""
-    rows = work.workspace.rows
+def seen_from(seen: Floats, block: Block, rows: Floats) -> Seen:
+    """Receivers of a block in the frame of an edge; `rows` is scratch."""
     for j in range(WIDTH):
         hit = block.first + min(j, block.n - 1)
         rows[0, j], rows[1, j] = seen[hit, 0], seen[hit, 1]
         rows[2, j], rows[3, j] = seen[hit, 2], seen[hit, 3]
-    h = load(rows[1])
+    return Seen(load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]))
+
+
+@jit(inner=True, fast=True)
+def set_images(edge: HorizontalEdgeArrays, h: Lanes, is_bounded: bool, work: EdgeWorkspace) -> None:
+    """Set the distances and angles in `work` for images of receivers that far off the edge [m]."""
     for k in range(len(work.across)):
-        across = hypot(h, load(work.workspace.image_z[k]) - edge.z)
+        z = load(work.workspace.image_z[k])
+        across = hypot(h, z - edge.z)
         store(work.across[k], across)
         left, before = (k + 1) // 2, k // 2
         nearest = farthest = across
@@ -109,7 +124,10 @@ def seen_from(edge: HorizontalEdgeArrays, seen: Floats, block: Block, work: Edge
             farthest = maximum(across, load(work.farthest[before]))
         store(work.nearest[left], nearest)
         store(work.farthest[left], farthest)
-    return Seen(load(rows[0]), h, load(rows[2]), load(rows[3]))
+        if is_bounded:
+            at = halves_of(edge, h, z, work.workspace.rows)
+            store(work.halves[k, 0], at[0])
+            store(work.halves[k, 1], at[1])
 
 
 @jit(inline=True)
@@ -198,15 +216,6 @@ def halves_of(edge: HorizontalEdgeArrays, h: Lanes, z: Lanes, rows: Floats) -> t
 
 
 @jit(inline=True, fast=True)
-def set_halves(edge: HorizontalEdgeArrays, seen: Seen, work: EdgeWorkspace) -> None:
-    """Set `work.halves`."""
-    for b in range(len(work.halves)):
-        at = halves_of(edge, seen.h, load(work.workspace.image_z[b]), work.workspace.rows)
-        store(work.halves[b, 0], at[0])
-        store(work.halves[b, 1], at[1])
-
-
-@jit(inline=True, fast=True)
 def quick_bound(
     tables: FieldTables,
     incident: tuple[Lanes, Lanes],
@@ -268,23 +277,29 @@ class Arriving(NamedTuple):
 
 
 @jit(inline=True)
+def n_pairs(left: int) -> float:
+    """Pairs of images in floor and ceiling with so many reflections together, or fewer."""
+    return 2.0 * left * (left + 1.0) + 1.0
+
+
+@jit(inline=True)
 def arriving_strongly(
     tables: FieldTables,
     images: ImagesIn,
     seen: Seen,
     way: Arriving,
-    behind: float,
+    limit: tuple[float, Lanes],
     workspace: Workspace,
     collector: Collector,
 ) -> Arriving:
     """Set the weights of receivers at which all paths are below the threshold to 0.
 
-    `behind` is the largest power behind the edge.
+    `limit` holds the largest power behind the edge over that of a free path as long, and a bound
+    on the power of each path.
     """
     h, aside = abs(images.h[way.p]) + seen.h, seen.x - images.x[way.p]
-    n_images = 2.0 * way.left * (way.left + 1.0) + 1.0
-    several, power = (n_images, lanes_of(n_images)), way.walls * behind
-    bound = free_space(tables, hypot(h, aside)) * power
+    several, (behind, bound) = (n_pairs(way.left), lanes_of(n_pairs(way.left))), limit
+    bound = minimum(bound, free_space(tables, hypot(h, aside)) * (way.walls * behind))
     weight = apply_power_threshold(collector, workspace, way.least, bound, way.weight, several)
     return Arriving(way.p, way.left, way.low, way.high, weight, way.walls, way.least)
 
@@ -361,33 +376,44 @@ def sum_horizontal_edge(
         Added to.
     """
     edge, images, hits, workspace = beams.edge, beams.images, beams.hits, work.workspace
-    is_bounded = has_threshold(collector)
+    is_bounded, at_1m = has_threshold(collector), at_one_metre(tables)
     behind = 0.25 * (1.0 + math.sqrt(shadow[0])) ** 2 if is_bounded else 0.0
     first = int(np.int64(0))  # a literal would be compiled as a type of its own
     while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
         least = least_powers(collector, workspace)
-        seen = seen_from(edge, beams.seen, block, work)
-        if is_bounded:
-            set_halves(edge, seen, work)
+        weakest = where(least < math.inf, least, 0.0)  # paths may only be counted by their bounds
+        seen, has_images = seen_from(beams.seen, block, workspace.rows), False
+        bins, over = distance_bins(seen.h), lanes_of(math.inf)
         out = geometry.max_reflections - int(beams.strips.link[block.beam, ORDER])
         kept = beams.strips.frame[block.beam, FRACTION]
-        bundle = empty_bundle(tables)
-        for p in range(len(images.order)):
+        bundle, p = empty_bundle(tables), int(np.int64(0))
+        while p < len(images.order):
             left = out - int(images.order[p])
             if left < 0 or is_stopped(collector.guard):
                 break
+            if len(beams.ranks) > 0:
+                rest, skips = all_from(beams.ranks, p, lanes_of(kept * at_1m), seen.h, weakest)
+                over, _ = gather_pairs1(beams.over_edge[p, left], bins)
+                over = over * (kept * images.fraction[p] * at_1m)
+                if skips or not any_of(over >= weakest * NEGLIGIBLE):
+                    leave_out(workspace, block.weight * (rest if skips else over) * n_pairs(left))
+                    p = int(beams.ranks[p, 2]) if skips else p + 1
+                    continue
+            if not has_images:
+                set_images(edge, seen.h, is_bounded, work)
+                has_images = True
             low, high = maximum(seen.low, images.low[p]), minimum(seen.high, images.high[p])
             weight = where(may_cross(images, seen, p, left, work), block.weight, 0.0)
-            if not any_of(weight > 0.0):
-                continue
             way = Arriving(p, left, low, high, weight, kept * images.fraction[p], least)
-            if is_bounded:
-                way = arriving_strongly(tables, images, seen, way, behind, workspace, collector)
+            if is_bounded and any_of(weight > 0.0):
+                limit = behind, over
+                way = arriving_strongly(tables, images, seen, way, limit, workspace, collector)
             if any_of(way.weight > 0.0):
                 here = block, seen, way
                 bundle = add_images(bundle, geometry, tables, beams, here, shadow, work, collector)
+            p += 1
         add_bundle(collector.sums, workspace, block.n, bundle)
         if is_bounded:
             add_left_out(collector.sums, workspace, block.n)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from raytrace.arrays import Floats
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.edge_losses import Directions, EdgeWays, largest_amplitude
+from raytrace.kernels.horizontal_edge_bounds import distance_bin
 from raytrace.kernels.plan_view import PlanView, cross
 
 COSINE_BINS = 64
@@ -65,6 +66,8 @@ class LossLimit(NamedTuple):
         (n, 5) ways from the transmitter to a horizontal edge: wall reflections, shortest length
         [m], largest fraction of the power behind the edge, and the interval of the sines between
         their directions and the edge's normal in the plan view; n = 0 for other roots.
+    over_edge
+        (n, max_reflections + 1, DISTANCES + 1) for these ways, see `bounds_over_edge`.
     further
         (max_reflections + 1,) most paths that a beam from an edge continues to, by the reflections
         left.
@@ -85,6 +88,7 @@ class LossLimit(NamedTuple):
     edge_ways: EdgeWays
     ranks: Floats
     ways: Floats
+    over_edge: Floats
     further: Floats
 
 
@@ -323,6 +327,13 @@ def along_edge(low: float, high: float, distance: float, rise: float) -> tuple[f
     return least - ROUNDING, largest + ROUNDING
 
 
+@jit(inline=True)
+def nearest_zero(interval: tuple[float, float]) -> float:
+    """Least magnitude within an interval."""
+    low, high = interval
+    return 0.0 if low * high <= 0.0 else min(abs(low), abs(high))
+
+
 @jit(inner=True)
 def has_strong_way(
     limits: Limits,
@@ -352,6 +363,8 @@ def has_strong_way(
     missing, k = 0.0, 0
     low = slopes[0] / math.hypot(1.0, slopes[0])
     high = slopes[1] / math.hypot(1.0, slopes[1])
+    off = distance / math.hypot(1.0, nearest_zero(slopes))
+    interval = distance_bin(off)
     while k < len(loss.ways):
         reflections, length = loss.ways[k, 0], loss.ways[k, 1]
         left = int(loss.most_reflections - reflections - order)
@@ -364,7 +377,9 @@ def has_strong_way(
             continue
         k += 1
         total, rise = max(length + distance, 1e-9), (left + 1.0) * loss.height
-        arriving = power * loss.ways[k - 1, 2] / (total * total)
+        free, nearest = power * loss.ways[k - 1, 2] / (total * total), max(length + off, 1e-9)
+        over = loss.over_edge[k - 1, left, interval] * nearest * nearest
+        arriving = free * min(over, 1.0)
         if arriving >= NEGLIGIBLE * least:
             before = along_edge(loss.ways[k - 1, 3], loss.ways[k - 1, 4], length, rise)
             behind = along_edge(low, high, distance, rise)

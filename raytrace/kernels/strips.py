@@ -39,6 +39,7 @@ from raytrace.kernels.losses import (
     has_strong_way,
     incidence,
     largest_fraction,
+    nearest_zero,
 )
 from raytrace.kernels.plan_view import PlanView
 from raytrace.kernels.rows import copy_row, enlarged, resized
@@ -275,8 +276,8 @@ def incidence_of_strip(
     met = incidence(0.0, normal, (low, 1.0), (high, 1.0))
     _, h1 = in_frame(frame, view.ends[e, 0], view.ends[e, 1])
     _, h2 = in_frame(frame, view.ends[e, 2], view.ends[e, 3])
-    slope = 0.0 if low * high <= 0.0 else min(abs(low), abs(high))
-    return Incidence(max(min(h1, h2), 0.0) * math.hypot(1.0, slope), met.least, met.largest)
+    length = max(min(h1, h2), 0.0) * math.hypot(1.0, nearest_zero(slopes))
+    return Incidence(length, met.least, met.largest)
 
 
 @jit(inner=True)

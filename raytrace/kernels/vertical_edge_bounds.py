@@ -26,10 +26,13 @@ class EdgeBounds(NamedTuple):
         (n_legs,) see `vertical_edge_legs.bounds_of_legs`.
     shadow
         See `bounds.wedge_bound`.
+    most
+        Largest power behind the edge over that of a free path as long.
     """
 
     legs: Floats
     shadow: Floats
+    most: float
 
 
 @jit()
@@ -60,7 +63,6 @@ def pair_bound(
     power threshold. Also returns how many paths there are, and all of them together over the bound.
     """
     shadow, arriving, least = limit
-    least = where(least < math.inf, least, 0.0)  # paths that are counted by their bounds
     legs, height = beams.legs, geometry.building.height
     left = geometry.max_reflections - out.order - int(legs.order[p])
     total, product = out.length + legs.length[p], out.length * legs.length[p]

@@ -69,12 +69,21 @@ class LegsIn(NamedTuple):
 
 
 class VerticalEdgeBeams(NamedTuple):
-    """An edge, the legs to it, the beams from it, and the receivers visible from these."""
+    """An edge, the legs to it, the beams from it, and the receivers visible from these.
+
+    Attributes
+    ----------
+    edge, legs, tree, hits
+        These.
+    ranks
+        (n_legs, 4) see `losses.LossLimit`; n_legs = 0 where no loss limits the beams.
+    """
 
     edge: VerticalEdgeArrays
     legs: LegsIn
     tree: Tree
     hits: Hits
+    ranks: Floats
 
 
 class LegsOut(NamedTuple):

@@ -13,6 +13,9 @@ from raytrace.arrays import Floats
 from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER
 from raytrace.kernels.blocks import Block, next_block
 from raytrace.kernels.bounds import (
+    LENGTHS,
+    all_from,
+    at_one_metre,
     image_bound,
     leg_bound,
 )
@@ -67,6 +70,7 @@ from raytrace.kernels.workspace import (
     count_path,
     has_threshold,
     least_powers,
+    leave_out,
 )
 
 
@@ -285,35 +289,39 @@ def sum_vertical_edge(
         Added to.
     """
     edge, legs, hits = beams.edge, beams.legs, beams.hits
+    at_1m, is_bounded = at_one_metre(tables) * bounds.most, has_threshold(collector)
     first = int(np.int64(0))  # a literal would be compiled as a type of its own
     while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
         first += block.n
-        is_bounded, least = has_threshold(collector), least_powers(collector, workspace)
+        least = least_powers(collector, workspace)
+        weakest = where(least < math.inf, least, 0.0)  # paths may only be counted by their bounds
         out = legs_from_edge(geometry, beams, block, leg, workspace.rows)
         off_edge = where(out.length < GRAZING_M, 0.0, block.weight)
         bound_out = bound = lanes_of(1.0)
         if is_bounded:
             bound_out = leg_bound(geometry, tables, leg, out.n, out.length, out.order)
             bound_out = minimum(bound_out, beams.tree.beam[block.beam, FRACTION])
-        bundle = empty_bundle(tables)
-        for p in range(len(legs.order)):
-            n_images = 2 * (geometry.max_reflections - out.order - legs.order[p]) + 1
-            if n_images < 0 or is_stopped(collector.guard):
+        bundle, p = empty_bundle(tables), int(np.int64(0))
+        while p < len(legs.order):
+            left = geometry.max_reflections - out.order - int(legs.order[p])
+            if left < 0 or is_stopped(collector.guard):
                 break
+            if len(beams.ranks) > 0:
+                rest, skips = all_from(beams.ranks, p, bound_out * at_1m, out.length, weakest)
+                if skips:
+                    leave_out(workspace, off_edge * rest * collector.heights[left, LENGTHS])
+                    p = int(beams.ranks[p, 2])
+                    continue
             weight = off_edge * legs.weight[p]
             if is_bounded:
-                arriving = bound_out * bounds.legs[p]
-                bound, several = pair_bound(
-                    geometry, tables, beams, p, out, (bounds.shadow, arriving, least), collector
-                )
+                limit = bounds.shadow, bound_out * bounds.legs[p], weakest
+                bound, several = pair_bound(geometry, tables, beams, p, out, limit, collector)
                 weight = apply_power_threshold(collector, workspace, least, bound, weight, several)
-                if not any_of(weight > 0.0):
-                    continue
-            pair = pair_of(tables, edge, legs, p, out)
             if any_of(weight > 0.0):
-                here = weight, bound, least
+                pair, here = pair_of(tables, edge, legs, p, out), (weight, bound, least)
                 bundle = add_pair(bundle, geometry, tables, block, pair, here, workspace, collector)
+            p += 1
         add_bundle(collector.sums, workspace, block.n, bundle)
         if is_bounded:
             add_left_out(collector.sums, workspace, block.n)

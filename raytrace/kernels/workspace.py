@@ -141,6 +141,12 @@ def least_powers(collector: Collector, workspace: Workspace) -> Lanes:
 
 
 @jit(inline=True)
+def leave_out(workspace: Workspace, power: Lanes) -> None:
+    """Record a bound on the power of paths that are left out."""
+    store(workspace.left, load(workspace.left) + power)
+
+
+@jit(inline=True)
 def apply_power_threshold(
     collector: Collector,
     workspace: Workspace,
@@ -165,7 +171,7 @@ def apply_power_threshold(
     below = bound < least
     if any_of(below & (weight > 0.0)):
         left = where(below, weight, 0.0)
-        store(workspace.left, load(workspace.left) + left * bound * several[1])
+        leave_out(workspace, left * bound * several[1])
         if math.isinf(collector.min_power):
             count_left_out(collector.sums, bound, left * several[0])
     return where(below, 0.0, weight)

@@ -109,7 +109,7 @@ class BeamClass(ABC, Generic[Beams]):
                 self._evaluate(batch, evaluation, collector)
             numbers = numbers[done:]
         check_whole(guard, True, HITS)
-        reachable = np.unique(self._tracing.targets.number)
+        reachable = self._tracing.reachable
         for collector in collectors:
             collector.sums.left_out[reachable] += left_out
         return [collector.sums for collector in collectors]

@@ -50,8 +50,9 @@ from raytrace.solver.loss_limits import (
     Arrivals,
     continuations,
     distances_to_cells,
+    edge_heights,
     edge_power,
-    limits_from_edge,
+    limits_from_horizontal_edge,
     limits_from_vertical_edge,
     shadow_of,
     strong_arrivals,
@@ -134,9 +135,10 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
 
     def _grow(self) -> tuple[VerticalEdgeBeams, float]:
         t, (legs, left_out) = self._tracing, self._legs_in()
-        tree = no_tree()
+        tree, ranks = no_tree(), np.empty((0, 4))
         if len(legs.order):
             limits = limits_from_vertical_edge(self._edge, legs, t.limits, self._counts)
+            ranks = limits.loss.ranks
             root = (self._edge.x, self._edge.y)
             guard = taking(t.guard, nbytes(legs), LEGS)
             tree, behind, is_whole = grow_tree(
@@ -144,7 +146,7 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
             )
             check_whole(guard, is_whole, BEAMS)
             left_out += behind
-        return VerticalEdgeBeams(self._edge, legs, tree, no_hits()), left_out
+        return VerticalEdgeBeams(self._edge, legs, tree, no_hits(), ranks), left_out
 
     def _most_walls(self, beams: VerticalEdgeBeams) -> int:
         return max_interactions(self._tracing.tree.link) + max_interactions(beams.tree.link)
@@ -163,10 +165,11 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
     ) -> None:
         geometry, tables = self._tracing.geometry, evaluation.tables
         leg = new_leg(beams.tree.link)
-        bounds = EdgeBounds(np.empty(0), np.empty(0))
+        bounds = EdgeBounds(np.empty(0), np.empty(0), 0.0)
         if collector.min_power > 0.0 or len(collector.least):
             shadow = shadow_of(self._tracing.limits, evaluation, self._edge.wedge.o_slab)
-            bounds = EdgeBounds(bounds_of_legs(geometry, tables, beams.legs), shadow)
+            arriving = bounds_of_legs(geometry, tables, beams.legs)
+            bounds = EdgeBounds(arriving, shadow, self._power_behind)
         workspace = new_workspace(geometry.max_reflections)
         sum_vertical_edge(geometry, tables, beams, bounds, leg, workspace, collector)
 
@@ -245,21 +248,26 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
         fraction = self._power_behind * images.fraction
         along = np.column_stack([images.low - images.x, images.high - images.x])
         sines = along / np.maximum(np.hypot(along, images.h[:, None]), 1e-12)
-        return Arrivals(images.order, np.hypot(aside, images.h), fraction, sines)
+        return Arrivals(images.order, np.hypot(aside, images.h), fraction, sines, images.h)
 
     def _grow(self) -> tuple[HorizontalEdgeBeams, float]:
         t, view, (images, left_out) = self._tracing, self._tracing.scene.view, self._images_in()
-        strips = no_strips()
+        strips, loss = no_strips(), t.limits.loss
         if len(images.order):
             cell = int(np.searchsorted(view.cell_edges, self._near, side="right")) - 1
-            limits = limits_from_edge(self._arrivals(images), t.limits, self._counts)
-            guard = taking(t.guard, nbytes(images), LEGS)
+            ends = edge_heights(t.scene, t.heights, self._edge, t.limits, self._power_behind)
+            limits = limits_from_horizontal_edge(
+                self._arrivals(images), t.limits, self._counts, ends
+            )
+            loss = limits.loss
+            guard = taking(t.guard, nbytes((images, loss.over_edge)), LEGS)
             heights = t.heights._replace(start=self._edge.z)
             strips, behind, is_whole = grow_strips(view, heights, self._near, cell, limits, guard)
             check_whole(guard, is_whole, BEAMS)
             left_out += behind
-        beams = HorizontalEdgeBeams(self._edge, t.tree, images, strips, no_hits(), np.empty((0, 4)))
-        return beams, left_out
+        no_points = no_hits(), np.empty((0, 4))
+        ways = loss.ranks, loss.over_edge * self._power_behind
+        return HorizontalEdgeBeams(self._edge, t.tree, images, strips, *no_points, *ways), left_out
 
     def _most_walls(self, beams: HorizontalEdgeBeams) -> int:
         return max_interactions(beams.tree.link) + max_interactions(beams.strips.link)

@@ -11,9 +11,13 @@ import numpy as np
 from raytrace.arrays import Floats, Ints
 from raytrace.config import TraceConfig
 from raytrace.kernels.bounds import SHEET_POWER, SHEET_POWER_THROUGH_WALLS, WEDGE_POWER
+from raytrace.kernels.building import image_bounces, image_heights
 from raytrace.kernels.edge_losses import EdgeWays
+from raytrace.kernels.horizontal_edge_bounds import EdgeHeights, bounds_over_edge
+from raytrace.kernels.horizontal_edge_legs import HorizontalEdgeArrays
 from raytrace.kernels.losses import UNLIMITED, Limits
 from raytrace.kernels.plan_view import PlanView
+from raytrace.kernels.turns import Heights
 from raytrace.kernels.vertical_edge_legs import LegsIn, VerticalEdgeArrays
 from raytrace.kernels.wedge import new_wedge
 from raytrace.scene import Scene
@@ -140,17 +144,16 @@ class Arrivals(NamedTuple):
     sines
         (n, 2) for a horizontal edge: the interval of the sines between the directions of arrival
         and the edge's normal in the plan view.
+    off
+        (n,) for a horizontal edge: distance of the transmitter's image [m], negative on the other
+        side than the receivers.
     """
 
     order: Ints
     length: Floats
     fraction: Floats
     sines: Floats | None = None
-
-    def at(self, kept: Ints) -> "Arrivals":
-        """Return some of the ways."""
-        sines = None if self.sines is None else self.sines[kept]
-        return Arrivals(self.order[kept], self.length[kept], self.fraction[kept], sines)
+    off: Floats | None = None
 
 
 def strong_arrivals(
@@ -172,7 +175,8 @@ def strong_arrivals(
     Returns
     -------
     kept, left_out
-        Which of the ways, and a bound on the power of all paths over the others.
+        Which of the ways, by rising order and then by falling strength, and a bound on the power of
+        all paths over the others.
     """
     loss = limits.loss
     if not loss.is_active:
@@ -184,7 +188,10 @@ def strong_arrivals(
     least = np.minimum.reduceat(loss.least, view.cell_edges[:-1])
     is_strong = (compared >= least).any(axis=1)
     together = power * further / np.maximum(arrivals.length, 1e-9) ** 2
-    return np.flatnonzero(is_strong), float(together[~is_strong].sum())
+    kept = np.flatnonzero(is_strong)
+    strength = arrivals.fraction[kept] / np.maximum(arrivals.length[kept], 1e-9) ** 2
+    by_strength = np.lexsort((-strength, arrivals.order[kept]))
+    return kept[by_strength], float(together[~is_strong].sum())
 
 
 def distances_to_cells(view: PlanView, points: Floats) -> Floats:
@@ -207,16 +214,44 @@ def _to_segments(points: Floats, one: Floats, other: Floats) -> Floats:
     return np.linalg.norm(off - t[..., None] * along, axis=-1)
 
 
-def limits_from_edge(arrivals: Arrivals, limits: Limits, counts: Floats) -> Limits:
+def limits_from_horizontal_edge(
+    arrivals: Arrivals, limits: Limits, counts: Floats, heights: EdgeHeights | None
+) -> Limits:
     """Limits of beams from a horizontal edge that power arrives at."""
     order = limits.max_reflections - int(arrivals.order.min())
     loss = limits.loss._replace(further=counts)
-    if loss.is_active and arrivals.sines is not None:
-        rows, ranks = ranked(arrivals.order, arrivals.length, arrivals.fraction)
+    if heights is not None and arrivals.sines is not None and arrivals.off is not None:
         columns = [arrivals.order, arrivals.length, arrivals.fraction, arrivals.sines]
-        ways = np.ascontiguousarray(np.column_stack(columns)[rows])
-        loss = loss._replace(ranks=ranks, ways=ways)
+        ways = np.ascontiguousarray(np.column_stack(columns))
+        sin_beta = np.sqrt(np.maximum(1.0 - (arrivals.sines**2).max(axis=1), 0.0))
+        over = bounds_over_edge(heights, arrivals.off, arrivals.length, sin_beta)
+        ranks = ranks_of(arrivals.order, arrivals.length, arrivals.fraction)
+        loss = loss._replace(ranks=ranks, ways=ways, over_edge=over)
     return limits._replace(max_reflections=order, loss=loss)
+
+
+def edge_heights(
+    scene: Scene, ends: Heights, edge: HorizontalEdgeArrays, limits: Limits, most: float
+) -> EdgeHeights | None:
+    """Heights of paths over an edge, most power behind it included; None without a limit."""
+    if not limits.loss.is_active:
+        return None
+    images = [
+        image_heights(end, scene.height_m, limits.max_reflections) - edge.z
+        for end in (ends.start, ends.low, ends.high)
+    ]
+    reflectance, slab = limits.loss.reflectance[:, :, -1], edge.wedge.o_slab
+    return EdgeHeights(
+        image_bounces(limits.max_reflections),
+        images[0],
+        np.minimum(images[1], images[2]),
+        np.maximum(images[1], images[2]),
+        reflectance[[scene.floor_slab, scene.ceiling_slab]].max(axis=0),
+        np.sqrt(reflectance[slab]),
+        np.sqrt(limits.loss.shadow[slab, :, -1]),
+        limits.loss.wavelength,
+        most,
+    )
 
 
 def limits_from_vertical_edge(
@@ -226,36 +261,36 @@ def limits_from_vertical_edge(
     order = limits.max_reflections - int(legs.order.min())
     loss = limits.loss._replace(further=counts)
     if loss.is_active:
-        rows, ranks = ranked(legs.order, legs.length, legs.fraction)
-        n, half = edge.wedge.n, legs.angles[rows, 1:3]
+        n, half = edge.wedge.n, legs.angles[:, 1:3]
         phi = 2.0 * np.arctan2(half[:, 1], half[:, 0])
         ways = EdgeWays(
             edge.wedge,
             (math.cos(edge.o_face), math.sin(edge.o_face)),
-            legs.order[rows],
-            legs.length[rows],
-            legs.fraction[rows],
+            legs.order,
+            legs.length,
+            legs.fraction,
             np.column_stack([np.cos(phi / (2.0 * n)), np.sin(phi / (2.0 * n))]),
-            legs.angles[rows, 5:7] ** 2,
+            legs.angles[:, 5:7] ** 2,
         )
         most = WEDGE_POWER
         if edge.wedge.is_sheet:
             most = 0.25 * (1.0 + math.sqrt(loss.shadow[edge.wedge.o_slab].max())) ** 2
+        ranks = ranks_of(legs.order, legs.length, legs.fraction)
         loss = loss._replace(most_behind_edge=most, edge_ways=ways, ranks=ranks)
     return limits._replace(max_reflections=order, loss=loss)
 
 
-def ranked(order: Ints, length: Floats, fraction: Floats) -> tuple[Ints, Floats]:
-    """Sort ways to an edge by rising order and falling strength; return rows and `losses.ranks`."""
+def ranks_of(order: Ints, length: Floats, fraction: Floats) -> Floats:
+    """Return `LossLimit.ranks` of ways to an edge, by rising order and falling strength."""
     strength = fraction / np.maximum(length, 1e-9) ** 2
-    rows = np.lexsort((-strength, order))
-    strength, ends = strength[rows], np.searchsorted(order[rows], order[rows], side="right")
+    ends = np.searchsorted(order, order, side="right")
     sums = np.append(np.cumsum(strength[::-1])[::-1], 0.0)
-    by_order = {n: length[order == n].max() for n in np.unique(order)}
-    longest = np.array([by_order[n] for n in order[rows]])
+    starts = np.searchsorted(order, order, side="left")
+    first = np.flatnonzero(starts == np.arange(len(order)))
+    longest = np.maximum.reduceat(length, first)[np.searchsorted(first, starts)]
     rest = np.maximum(sums[:-1] - sums[ends], strength)
     columns = strength, rest, ends.astype(np.float64), np.maximum(longest, 1e-9)
-    return rows, np.column_stack(columns)
+    return np.column_stack(columns)
 
 
 def is_alone(limits: Limits) -> bool:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from raytrace.kernels.building import (
 )
 from raytrace.kernels.edge_losses import no_edge_ways
 from raytrace.kernels.guard import Guard, no_guard
+from raytrace.kernels.horizontal_edge_bounds import DISTANCES
 from raytrace.kernels.losses import COSINE_BINS, UNLIMITED, Limits, LossLimit
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.turns import Heights
@@ -77,6 +79,11 @@ class Tracing:
     grown_for: bytes | None = None
     least: Floats = field(default_factory=lambda: np.zeros(0))
     least_diffracted: Floats = field(default_factory=lambda: np.zeros(0))
+
+    @cached_property
+    def reachable(self) -> Ints:
+        """Numbers of the receivers inside the building."""
+        return np.unique(self.targets.number)
 
     def shared_by(self, threads: int) -> "Tracing":
         """Return the same, with the memory that is left for each of some threads."""
@@ -164,6 +171,7 @@ def limits_by_number(scene: Scene, config: TraceConfig) -> Limits:
         edge_ways=no_edge_ways(),
         ranks=np.zeros((0, 4)),
         ways=np.zeros((0, 5)),
+        over_edge=np.zeros((0, order + 1, DISTANCES + 1)),
         further=np.zeros(0),
     )
     return Limits(order, UNLIMITED if transmissions is None else transmissions, loss)

@@ -1,6 +1,7 @@
 """Beams that are too weak are not grown: no strong path is missing, and the rest is bounded."""
 
 import math
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -25,7 +26,14 @@ from raytrace import (
     received_power,
     trace_paths,
 )
+from raytrace.kernels.building import image_bounces, image_heights
 from raytrace.kernels.edge_losses import directions_between, largest_amplitude
+from raytrace.kernels.horizontal_edge_bounds import (
+    DISTANCES,
+    MIDDLE_M,
+    EdgeHeights,
+    bounds_over_edge,
+)
 from raytrace.kernels.losses import COSINE_BINS
 from raytrace.kernels.wedge import Wedge, new_wedge
 from raytrace.radio.materials import MATERIALS, Slab
@@ -48,6 +56,9 @@ CAVITY = Slab.of(
     Layered("cavity", tuple(Layer(MATERIALS[name], d) for name, d in LAYERS)), 0.296
 ).as_wall()
 """A layered wall, which resonates."""
+
+STARTS = MIDDLE_M * np.arange(DISTANCES) / (DISTANCES - np.arange(DISTANCES))
+"""Where the intervals of distances behind a horizontal edge begin [m]."""
 
 SOURCE = Transmitter((1.2345, 1.8123, 1.3))
 
@@ -208,8 +219,10 @@ def test_no_direction_exceeds_the_bound_behind_an_edge() -> None:
         assert n_sine <= np.abs(np.sin(n * np.pi - phi)).min() + 1e-12
 
 
-def four_terms(n: float, phi: NDArray, incoming: float, kl: float) -> list[NDArray]:
-    """Terms of the diffraction coefficient (400,) over the field of a free path as long."""
+def four_terms(
+    n: float, phi: NDArray, incoming: NDArray | float, kl: NDArray | float
+) -> list[NDArray]:
+    """Terms of the diffraction coefficient (n,) over the field of a free path as long."""
     found = []
     for beta in (phi - incoming, phi + incoming):
         for sign in (1.0, -1.0):
@@ -221,3 +234,61 @@ def four_terms(n: float, phi: NDArray, incoming: float, kl: float) -> list[NDArr
             cotangent = 1.0 / np.tan((np.pi + sign * beta) / (2.0 * n))
             found.append(cotangent * transition / (2.0 * n * np.sqrt(2.0 * np.pi * kl)))
     return found
+
+
+class Coefficients(NamedTuple):
+    """Of floor or ceiling (as power), of the wall and of its shadow, at cosines of incidence."""
+
+    surfaces: NDArray
+    face: NDArray
+    shadow: NDArray
+
+    def at(self, column: NDArray, cosine: NDArray) -> NDArray:
+        """Return those of the intervals of cosines."""
+        return column[np.minimum((cosine * COSINE_BINS).astype(int), COSINE_BINS - 1)]
+
+    def at_or_above(self) -> list[NDArray]:
+        """Return the largest ones at a cosine or above."""
+        return [np.maximum.accumulate(column[::-1])[::-1] for column in self]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_no_height_exceeds_the_bound_behind_a_horizontal_edge(seed: int) -> None:
+    """At random distances, obliqueness and heights between the lowest and the highest receiver."""
+    rng = np.random.default_rng(seed)
+    height, order, wavelength = rng.uniform(2.2, 5.0), 3, 10.0 ** rng.uniform(-2.0, 0.0)
+    z_edge, z_source, *ends = rng.uniform(0.1, height - 0.1, 4)
+    low, high = sorted(ends)
+    made = Coefficients(*(rng.uniform(0.0, most, COSINE_BINS) for most in (1.0, 1.0, 2.0)))
+    bounces, (before, at_low, at_high) = (
+        image_bounces(order),
+        [image_heights(z, height, order) - z_edge for z in (z_source, low, high)],
+    )
+    lowest, highest = np.minimum(at_low, at_high), np.maximum(at_low, at_high)
+    h, length = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-2.0, 1.5), rng.uniform(0.0, 30.0)
+    length, least_sin_beta = max(length, abs(h)), rng.uniform(0.05, 1.0)
+    most = rng.uniform(1.0, 3.0)
+    ways = np.array([h]), np.array([length]), np.array([least_sin_beta])
+    heights = EdgeHeights(bounces, before, lowest, highest, *made.at_or_above(), wavelength, most)
+    bounds = bounds_over_edge(heights, *ways)[0, :, :DISTANCES]
+    assert (np.diff(bounds, axis=0) >= 0.0).all()
+    assert (np.diff(bounds, axis=1) <= 0.0).all()
+    n = 4000
+    off, sin_beta = 10.0 ** rng.uniform(-2.0, 2.0, n), rng.uniform(least_sin_beta, 1.0, n)
+    a, b = rng.integers(0, len(bounces), (2, n))
+    rise_in, rise_out = before[a], rng.uniform(lowest[b], highest[b])
+    across_in, across_out = np.hypot(h, rise_in), np.hypot(off, rise_out)
+    incoming = np.arctan2(h, rise_in) % (2.0 * np.pi)
+    phi = np.arctan2(off, rise_out)
+    kl = 2.0 * np.pi / wavelength * across_in * across_out / (across_in + across_out) * sin_beta
+    cosine = sin_beta * np.sqrt(np.abs(np.sin(incoming) * np.sin(phi)))
+    shadow, face = made.at(made.shadow, cosine), made.at(made.face, cosine)
+    terms = [np.abs(term) for term in four_terms(2.0, phi, incoming, kl)]
+    field = shadow * (terms[0] + terms[1]) + face * (terms[2] + terms[3])
+    kept = made.at(made.surfaces, sin_beta * np.abs(rise_in) / across_in) ** bounces[a]
+    kept *= made.at(made.surfaces, sin_beta * np.abs(rise_out) / across_out) ** bounces[b]
+    power = field**2 * kept / (length + off) ** 2 / most
+    left = bounces[a] + bounces[b]
+    some = left <= order
+    nearest = np.searchsorted(STARTS[1:], off, side="right")
+    assert (power[some] <= bounds[left[some], nearest[some]] * (1.0 + 1e-6)).all()
