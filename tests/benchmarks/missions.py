@@ -112,7 +112,9 @@ def learned_doors(building: Building) -> None:
     found = [f"known {known.expected:.1f}", f"seen {seen.expected:.1f}"]
     for memory in (True, False):
         sight = Observation(None, cell=True, doors=memory)
-        table = train_mission(mission, task, sight, steps=STEPS)
+        decay = math.log(100.0) / (0.5 * STEPS)
+        learning = QLearning(eta=decay, initial_q=0.0)
+        table = train_mission(mission, task, sight, steps=STEPS, learning=learning)
         flights = fly(mission, task, sight, table, episodes=200)
         name = "with memory" if memory else "without"
         found.append(f"{name} {flights.steps.mean():.1f} (found {flights.found.mean():.2f})")
