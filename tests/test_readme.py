@@ -2,10 +2,12 @@
 
 import re
 import shlex
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from typer.testing import CliRunner
 
 from rssnav.cli import app
@@ -83,3 +85,24 @@ def test_every_make_target_it_names_exists() -> None:
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     named = set(re.findall(r"`?make ([a-z]+)", README))
     assert named <= set(re.findall(r"^([a-z]+):", makefile, flags=re.MULTILINE))
+
+
+def badge(name: str) -> tuple[str, str]:
+    """Both texts of a badge, which is a link to what it is about."""
+    assert re.search(rf"\[!\[.*\]\(docs/images/badges/{name}\.svg\)\]\(\S+\)", README)
+    picture = (ROOT / "docs" / "images" / "badges" / f"{name}.svg").read_text(encoding="utf-8")
+    left, right = re.findall(r"<text .*>(.*)</text>", picture)
+    return left, right
+
+
+def test_badges_say_what_the_project_does() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    oldest = project["requires-python"].removeprefix(">=")
+    assert badge("python") == ("Python", f"{oldest} or newer")
+    assert badge("licence") == ("licence", project["license"])
+    workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text("utf-8"))
+    steps = workflow["jobs"]["check"]["steps"]
+    (run,) = [step["run"] for step in steps if "run" in step]
+    (python,) = [step["with"]["python-version"] for step in steps if "python" in str(step)]
+    assert badge("ci") == ("CI", f"{run} on Python {python}")
+    assert (ROOT / run).stat().st_mode & 0o100

@@ -49,6 +49,12 @@ _NARROW_PX = 600
 _WIDE = 1.15
 """Width over height of a page that shows all of a scene with the camera's field of view."""
 
+_MARGIN = 1.2
+"""Half the height of a page over that of the scene, which the legends need."""
+
+_RAISED = 0.06
+"""How much higher than the middle of a page the scene is, for the legend below it; a share."""
+
 _FONT = "font:13px/1.5 sans-serif;pointer-events:none"
 _OLD_TITLE = "<title>trimesh: threejs viewer</title>"
 _PAGE_CHANGES = (
@@ -65,11 +71,12 @@ _PAGE_CHANGES = (
     (
         "camera.aspect=window.innerWidth/window.innerHeight;",
         "camera.aspect=window.innerWidth/window.innerHeight;"
-        f"camera.fov=Math.atan(Math.tan({FIELD_OF_VIEW_DEG / 2}*Math.PI/180)"
-        f"*Math.max(1,{_WIDE}/camera.aspect))*360/Math.PI;",
+        "camera.fov=Math.atan(Math.max(TALL,WIDE/camera.aspect))*360/Math.PI;"
+        "camera.setViewOffset(innerWidth,innerHeight,"
+        f"0,{_RAISED}*innerHeight,innerWidth,innerHeight);",
     ),
 )
-"""Ambient light, a lamp that follows the view, and all of the scene on a narrow page too."""
+"""Ambient light, a lamp that follows the view, and all of the scene on a page of any shape."""
 
 
 def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) -> trimesh.Scene:
@@ -215,6 +222,8 @@ def scene_html(scene: trimesh.Scene, title: str, bar: ColourBar | None = None) -
     for old, new in _PAGE_CHANGES:
         page = page.replace(old, new, 1)
     page = page.replace(_OLD_TITLE, f"<title>{escape(title)}</title>", 1)
+    wide, tall = _MARGIN * np.tan(_half_angles(scene))
+    page = page.replace("<script>", f"<script>const WIDE={wide:.6f},TALL={tall:.6f};", 1)
     overlay = _key(scene, title) + ("" if bar is None else bar.html())
     return page.replace("<body>", f"<body>{overlay}", 1)
 
@@ -304,12 +313,25 @@ def _tubes(segments: NDArray[np.float64], radius_m: float) -> NDArray[np.float64
 
 
 def _set_camera(scene: trimesh.Scene) -> None:
-    """Look down at the middle of the scene from the south, with all of it in view."""
+    """Look down at the middle of the scene from the south, as near as all of it is in view."""
     low, high = scene.bounds
-    distance = 0.5 * float(np.linalg.norm(high - low)) / np.tan(np.radians(FIELD_OF_VIEW_DEG / 2))
+    corners = trimesh.bounds.corners(scene.bounds) - (low + high) / 2
+    pitch = np.radians(CAMERA_PITCH_DEG)
+    level = trimesh.transformations.rotation_matrix(-pitch, (1, 0, 0))[:3, :3]
+    across, up, near = level @ corners.T
+    reach = np.tan(np.radians(FIELD_OF_VIEW_DEG / 2)) / _MARGIN
+    distance = np.max(near + np.maximum(np.abs(across) / _WIDE, np.abs(up)) / reach)
     scene.set_camera(
-        angles=(np.radians(CAMERA_PITCH_DEG), 0.0, 0.0),
-        distance=distance,
+        angles=(pitch, 0.0, 0.0),
+        distance=float(distance),
         center=(low + high) / 2,
         fov=(FIELD_OF_VIEW_DEG, FIELD_OF_VIEW_DEG),
     )
+
+
+def _half_angles(scene: trimesh.Scene) -> NDArray[np.float64]:
+    """Angles [rad] from the camera's axis to the scene's edges, across and up, (2,)."""
+    corners = trimesh.transform_points(
+        trimesh.bounds.corners(scene.bounds), np.linalg.inv(scene.camera_transform)
+    )
+    return np.arctan(np.max(np.abs(corners[:, :2]) / -corners[:, 2:], axis=0))

@@ -14,6 +14,8 @@ FRAMES = 30
 """Maximum number of frames of a flight."""
 
 FRAME_MS = 50
+LEARNED_MS = 3000
+"""Least duration of the learned flight, which may have few steps."""
 
 
 class FlightPlayer:
@@ -33,9 +35,7 @@ class FlightPlayer:
         self._show = show
         self._training: LiveTraining | None = None
         self._first = np.zeros(1, dtype=np.int64)
-        self._going = False
-        self._shown: Flight | None = None
-        self._resting: Flight | None = None
+        self._going = self._slow = False
         self._episode = pn.widgets.DiscreteSlider(
             name="Episode", options={"1": 0}, stylesheets=WIDGETS, sizing_mode="stretch_width"
         )
@@ -51,9 +51,14 @@ class FlightPlayer:
         self._text = pn.pane.HTML("", stylesheets=WIDGETS, sizing_mode="stretch_width")
         self._player.param.watch(self._go, "value")
         self._episode.param.watch(self._jump, "value")
-        self.view = pn.Column(
-            self._text, self._player, self._episode, visible=False, sizing_mode="stretch_width"
+        self._replay = pn.widgets.Button(
+            label="Play learned flight", stylesheets=WIDGETS, width=160, visible=False
         )
+        self._replay.on_click(self._play_learned)
+        self.view = pn.Column(
+            pn.Row(self._text, self._replay), self._player, self._episode, visible=False,
+            sizing_mode="stretch_width",
+        )  # fmt: skip
 
     def follow(self, training: LiveTraining | None) -> None:
         """Update the flights of a training; show the latest unless earlier ones are being played.
@@ -65,6 +70,7 @@ class FlightPlayer:
             return
         self._training = training
         self._first = first_frames([flight.steps for flight in flights])
+        self._replay.visible = bool(flights) and flights[-1].learned
         if not flights:
             return
         self._episode.options = {_name(flight): index for index, flight in enumerate(flights)}
@@ -74,13 +80,6 @@ class FlightPlayer:
         if self._player.direction == 0:
             self._player.value = self._player.end
             self._go(None)
-
-    @property
-    def flight(self) -> Flight | None:
-        """The flight that is shown, or while flights are played, the last one before."""
-        if self._player.direction == 0:
-            self._resting = self._shown if self.view.visible else None
-        return self._resting
 
     def show(self, wanted: bool) -> None:
         """Show the player and its flight if wanted and if there are flights."""
@@ -96,12 +95,20 @@ class FlightPlayer:
         index, fraction = flight_at(self._first, self._player.value)
         flight = self._training.flights[index]
         step = round(fraction * flight.steps)
-        self._shown = flight
+        if not flight.learned and self._slow:
+            self._player.interval, self._slow = FRAME_MS, False
         self._show(flight, step)
         self._text.object = _words(flight, step, self._training.settings.episodes)
         self._going = True
         self._episode.value = index
         self._going = False
+
+    def _play_learned(self, _event: Any) -> None:
+        """Play the learned flight, the last one, from its start."""
+        frames = int(self._first[-1] - self._first[-2])
+        self._player.value = int(self._first[-2])
+        self._player.interval = max(FRAME_MS, LEARNED_MS // frames)
+        self._player.direction, self._slow = 1, True
 
     def _jump(self, event: Any) -> None:
         """Jump to the start of an episode's flight."""
@@ -136,9 +143,10 @@ def _name(flight: Flight) -> str:
 
 def _words(flight: Flight, step: int, episodes: int) -> str:
     if flight.learned:
-        what, end = f"Learned in <b>{episodes}</b> episodes", "ends in a cycle"
+        what, end = f"Learned in <b>{episodes}</b> episodes", "goes round in circles"
     else:
-        what, end = f"Episode <b>{flight.episode}</b> of {episodes}", "is truncated"
+        what = f"Episode <b>{flight.episode}</b> of {episodes}"
+        end = "ends at the limit of steps"
     if flight.reached:
         end = "reaches the source"
-    return f'{what}: step {step} of {flight.steps}, <span class="quiet">which {end}</span>'
+    return f'{what}: step {step} of {flight.steps} <span class="quiet">({end})</span>'

@@ -1,5 +1,6 @@
 """What colours, hatching and marks mean, and which keys there are."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import panel as pn
@@ -33,17 +34,39 @@ NO_PATH_KEY = _swatch(
 WALL_KEY, OPENING_KEY = _line(INK, 3), _line(FREE_WALL, 2)
 SOURCE_KEY, START_KEY = _sign(SOURCE, "\u2605"), _sign(START, "\u25cf")
 
-LEGEND = "".join(
-    f"<span>{key} {words}</span>"
-    for key, words in (
+CELL_KEY = _swatch(f"box-sizing:border-box;width:14px;border:2px solid {SOURCE}")
+UAV_KEY = _sign(INK, "\u25c6")
+
+
+def _legend(rows: Sequence[tuple[str, str]], remark: str = "") -> str:
+    """HTML of signs and what they mean, on a line."""
+    signs = "".join(f"<span>{key} {words}</span>" for key, words in rows)
+    return f'<p class="legend">{signs}{remark}</p>'
+
+
+LEGEND = _legend(
+    (
         (SOURCE_KEY, "source"),
         (START_KEY, "start"),
+        (UAV_KEY, "UAV"),
+        (CELL_KEY, "chosen cell"),
         (WALL_KEY, "wall"),
         (OPENING_KEY, "opening or low wall"),
         (NO_PATH_KEY, "no path"),
     )
 )
 """HTML of the line below the map."""
+
+LEGEND_3D = _legend(
+    (
+        (_sign(SOURCE, "\u25cf"), "source"),
+        (START_KEY, "start"),
+        (UAV_KEY, "UAV"),
+        (_swatch(f"background:{NO_PATH}"), "no path"),
+    ),
+    "<span>Drag to turn, wheel or two fingers to zoom</span>",
+)
+"""HTML of the line below the view in three dimensions."""
 
 _RSS_KEY = _swatch("background:linear-gradient(90deg,#440154,#3b528b,#21918c,#5ec962,#fde725)")
 _PATHS_KEY = _swatch("height:4px;background:linear-gradient(90deg,#fed976,#fd8d3c,#bd0026)")

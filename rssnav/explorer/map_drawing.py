@@ -3,7 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from bokeh.models import DataRange1d, PanTool, ResetTool, WheelZoomTool
+from bokeh.models import (
+    ColorBar,
+    CustomJS,
+    DataRange1d,
+    LinearColorMapper,
+    PanTool,
+    ResetTool,
+    WheelZoomTool,
+)
 from bokeh.plotting import figure
 from shapely import get_coordinates
 
@@ -14,6 +22,26 @@ from rssnav.pictures.style import INK
 FONT = "Inter, system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 FLOOR = "#fbfaf7"
 AXIS = "#b0aca2"
+PADDING = 0.006
+"""Free space between the plan and its axes, as a fraction of the plan's sides."""
+
+BORDERS_PX = {"left": 46, "right": 38, "top": 8, "bottom": 94}
+"""Room for the axes, the tools and the colour bar around the plan."""
+
+LEAST_SIDE_PX = 60
+_FIT = """
+    document.querySelector(".view")?.style.setProperty("--aspect", aspect);
+    const wide = Math.max(plot.outer_width - left - right, least);
+    const high = Math.max(plot.outer_height - top - bottom, least);
+    const width = Math.max(Math.min(wide, high * aspect), least);
+    const height = Math.max(Math.min(high, wide / aspect), least);
+    const spare = (wide - width) / 2;
+    plot.setv({
+        min_border_left: left + spare, min_border_right: right + spare,
+        min_border_top: top, min_border_bottom: bottom + high - height,
+    }, {sync: false});
+"""
+"""Gives the frame the plan's shape, so that the axes are at the plan in a page of any size."""
 
 
 def empty_figure() -> figure:
@@ -24,8 +52,8 @@ def empty_figure() -> figure:
         match_aspect=True,
         tools=[PanTool(), WheelZoomTool(), ResetTool()],
         toolbar_location="right",
-        x_range=DataRange1d(range_padding=0.02),
-        y_range=DataRange1d(range_padding=0.02),
+        x_range=DataRange1d(range_padding=PADDING),
+        y_range=DataRange1d(range_padding=PADDING),
         outline_line_color=None,
         background_fill_color=None,
         border_fill_color=None,
@@ -34,8 +62,8 @@ def empty_figure() -> figure:
     model.grid.visible = False
     for axis, name in ((model.xaxis, "x [m]"), (model.yaxis, "y [m]")):
         axis.update(
-            axis_label=name, axis_line_color=AXIS, major_tick_in=0, minor_tick_line_color=None,
-            major_tick_line_color=AXIS,
+            axis_label=name, axis_line_color=None, major_tick_in=2, major_tick_out=4,
+            major_tick_line_color=AXIS, minor_tick_line_color=None,
         )  # fmt: skip
     style_axes(model)
     return model
@@ -48,6 +76,17 @@ def style_axes(model: figure) -> None:
             axis_label_text_font=FONT, major_label_text_font=FONT, axis_label_text_color=INK,
             axis_label_text_font_style="normal", major_label_text_color=INK,
         )  # fmt: skip
+
+
+def colour_bar(mapper: LinearColorMapper, title: str) -> ColorBar:
+    """Return the legend of a colour mapper, for the room below the map."""
+    return ColorBar(
+        color_mapper=mapper, title=title, height=10, padding=4,
+        title_text_font=FONT, title_text_font_style="normal", title_text_font_size="12px",
+        title_text_color=INK, major_label_text_color=INK,
+        major_label_text_font=FONT, major_label_text_font_size="11px", bar_line_color=None,
+        major_tick_line_color=None, background_fill_color=None,
+    )  # fmt: skip
 
 
 def draw_floor(model: figure, plan: FloorPlan) -> None:
@@ -63,6 +102,15 @@ def draw_floor(model: figure, plan: FloorPlan) -> None:
         axis.update(renderers=[floor])
     x_min, y_min, x_max, y_max = plan.bounds
     model.xaxis.bounds, model.yaxis.bounds = (x_min, x_max), (y_min, y_max)
+    _fit_frame(model, (x_max - x_min) / (y_max - y_min))
+
+
+def _fit_frame(model: figure, aspect: float) -> None:
+    """Give the frame of a figure the width over height of a plan, whatever the figure's size."""
+    args = {"plot": model, "aspect": aspect, "least": LEAST_SIDE_PX, **BORDERS_PX}
+    fit = CustomJS(args=args, code=_FIT)
+    for side in ("outer_width", "outer_height"):
+        model.js_on_change(side, fit)
 
 
 def draw_walls(model: figure, plan: FloorPlan, height_m: float) -> None:

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from bokeh.events import Tap
 from bokeh.models import (
-    ColorBar,
     ColumnDataSource,
     HoverTool,
     Image,
@@ -30,14 +29,14 @@ from rssnav.explorer.hover import (
     reading_columns,
     written_in,
 )
-from rssnav.explorer.map_drawing import FONT, draw_floor, draw_walls, empty_figure
+from rssnav.explorer.map_drawing import colour_bar, draw_floor, draw_walls, empty_figure
 from rssnav.explorer.map_marks import Marks, are_numbers
 from rssnav.explorer.map_search import SearchOverlay
 from rssnav.explorer.survey_layer import Residuals
 from rssnav.explorer.tracing import TracedMap
 from rssnav.maps import cells_inside
 from rssnav.pictures.radio_map import NO_PATH
-from rssnav.pictures.style import AGENT_COLOURS, INK
+from rssnav.pictures.style import AGENT_COLOURS
 
 KEYS = "keys"
 """Name of the data that the page's script fills with the arrow and Enter keys."""
@@ -180,10 +179,12 @@ class MapFigure:
         self.fade()
 
     def fade(self) -> None:
-        """Show the map in pale colours under paths, and not at all under a belief."""
+        """Show the map in pale colours under paths; a belief and its legend take its place."""
         alpha = FADED if len(self._paths.data["xs"]) else PLAIN
         if self.search.has_belief:
             alpha = HIDDEN
+        if self._bar.visible == self.search.has_belief:
+            self._bar.visible = not self.search.has_belief
         if self._picture.glyph.global_alpha != alpha:
             self._picture.glyph.update(global_alpha=alpha)
 
@@ -228,14 +229,8 @@ class MapFigure:
             visible=False,
         )
         self.model.add_tools(self._hover)
-        bar = ColorBar(
-            color_mapper=self._mapper, title="RSS [dBm]", height=10, padding=4,
-            title_text_font=FONT, title_text_font_style="normal", title_text_font_size="12px",
-            title_text_color=INK, major_label_text_color=INK,
-            major_label_text_font=FONT, major_label_text_font_size="11px", bar_line_color=None,
-            major_tick_line_color=None, background_fill_color=None,
-        )  # fmt: skip
-        self.model.add_layout(bar, "below")
+        self._bar = colour_bar(self._mapper, "RSS [dBm]")
+        self.model.add_layout(self._bar, "below")
 
     def _draw_survey(self) -> None:
         colours = LinearColorMapper(palette=RdBu11, low=-RESIDUALS_DB, high=RESIDUALS_DB)

@@ -10,10 +10,14 @@ from bokeh.plotting import figure
 from numpy.typing import NDArray
 
 from raytrace import Grid
+from rssnav.explorer.map_drawing import colour_bar
 from rssnav.pictures.style import AGENT_COLOURS
 
 COLOURS = (AGENT_COLOURS["rss"], AGENT_COLOURS["location"])
 BELIEF = "#d6006c"
+WIDTHS, EDGE = (6.0, 2.2), 2.2
+"""Widths of the lines [px]; the first is seen on both sides of the second where both flew."""
+
 OPACITY, SHADES = 0.8, 32
 LEAST_STRENGTH = 6.0
 """The darkest shade is at least this many times the probability of a cell in an even belief."""
@@ -37,6 +41,9 @@ class SearchOverlay:
         self._belief = ColumnDataSource(dict(_NO_IMAGE))
         glyph = Image(image="image", x="x", y="y", dw="dw", dh="dh", color_mapper=self._mapper)
         model.add_glyph(self._belief, glyph)
+        self._bar = colour_bar(self._mapper, "Belief: probability of the source in each cell")
+        self._bar.visible = False
+        model.add_layout(self._bar, "below")
         self._trails: list[tuple[ColumnDataSource, ColumnDataSource]] = []
         self._shown: NDArray[np.float32] | None = None
 
@@ -47,17 +54,21 @@ class SearchOverlay:
 
     def draw_flights(self) -> None:
         """Draw what will show the flights, above all that the figure has so far."""
-        for colour, width in zip(COLOURS, (4.0, 2.4), strict=True):
-            trail, uav = (ColumnDataSource(dict(_NO_POINTS)) for _ in range(2))
-            self._model.line("x", "y", source=trail, line_color="white", line_width=width + 2.2)
-            self._model.line(
-                "x", "y", source=trail, line_color=colour, line_width=width, line_join="round"
-            )
+        data = [[ColumnDataSource(dict(_NO_POINTS)) for _ in range(2)] for _ in COLOURS]
+        for (trail, _), width in zip(data, WIDTHS, strict=True):
+            self._line(trail, "white", width + EDGE)
+        for (trail, uav), colour, width in zip(data, COLOURS, WIDTHS, strict=True):
+            self._line(trail, colour, width)
             self._model.scatter(
                 "x", "y", source=uav, size=15, marker="diamond", fill_color=colour,
                 line_color="white", line_width=2,
             )  # fmt: skip
             self._trails.append((trail, uav))
+
+    def _line(self, trail: ColumnDataSource, colour: str, width: float) -> None:
+        self._model.line(
+            "x", "y", source=trail, line_color=colour, line_width=width, line_join="round"
+        )
 
     def show(
         self,
@@ -82,8 +93,9 @@ class SearchOverlay:
             return
         self._shown = belief
         if belief is None:
-            self._belief.data = dict(_NO_IMAGE)
+            self._remove_belief()
             return
+        self._bar.visible = True
         half = 0.5 * grid.cell_size_m
         self._mapper.high = max(float(belief.max()), LEAST_STRENGTH / belief.size)
         self._belief.data = {
@@ -101,7 +113,10 @@ class SearchOverlay:
                 if len(source.data["x"]):
                     source.data = dict(_NO_POINTS)
         if self.has_belief:
-            self._shown, self._belief.data = None, dict(_NO_IMAGE)
+            self._remove_belief()
+
+    def _remove_belief(self) -> None:
+        self._shown, self._belief.data, self._bar.visible = None, dict(_NO_IMAGE), False
 
 
 def _columns(position: NDArray[np.float64]) -> dict[str, Any]:

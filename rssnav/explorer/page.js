@@ -23,6 +23,26 @@ view.addEventListener("keydown", (event) => {
   keys.data = { right: [step[0]], up: [step[1]], count: [presses] };
 });
 
+// Flights: the 3D view asks for them when it is ready, and gets every change that follows.
+let space = null;
+const named = (name) =>
+  Bokeh.documents.map((page) => page.get_model_by_name(name)).find(Boolean)?.data;
+const contents = {
+  "flight lines": ({ x, y, colour }) => ({
+    lines: x.map((at, k) => ({ x: Array.from(at), y: Array.from(y[k]), colour: colour[k] })),
+  }),
+  "flight steps": ({ step }) => ({ steps: Array.from(step) }),
+};
+window.passOnFlights = (name) => {
+  const data = named(name);
+  if (space && data) space.postMessage(contents[name](data), "*");
+};
+window.addEventListener("message", (event) => {
+  if (event.data !== "flights?") return;
+  space = event.source;
+  Object.keys(contents).forEach(window.passOnFlights);
+});
+
 // The library puts tabs behind their content, and makes a stop of each arrow of a number.
 const tidy = (root) => {
   for (const node of root.querySelectorAll("*")) {

@@ -9,12 +9,14 @@ from rssnav.explorer.cell_panel import CellPanel
 from rssnav.explorer.cell_paths import strongest
 from rssnav.explorer.downloads import Downloads
 from rssnav.explorer.flight_player import FlightPlayer
-from rssnav.explorer.help_panel import LEGEND, HelpPanel
+from rssnav.explorer.help_panel import LEGEND, LEGEND_3D, HelpPanel
 from rssnav.explorer.map_figure import MapFigure
 from rssnav.explorer.map_panel import MapPanel
+from rssnav.explorer.map_search import COLOURS
 from rssnav.explorer.plan_panel import PlanPanel
 from rssnav.explorer.search_panel import SearchPanel, Shown
 from rssnav.explorer.session import Session
+from rssnav.explorer.space_flights import FlightLine, SpaceFlights
 from rssnav.explorer.space_view import page_3d
 from rssnav.explorer.styles import (
     FRAME,
@@ -32,9 +34,11 @@ from rssnav.explorer.styles import (
 from rssnav.explorer.training import Flight
 from rssnav.explorer.training_panel import TrainingPanel
 from rssnav.kernel_cache import tracer_cache
+from rssnav.pictures.style import AGENT_COLOURS
 
 POLL_MS = 100
 PATHS_TAB, TRAINING_TAB, SEARCH_TAB = 1, 2, 3
+FLIGHT_TABS = (TRAINING_TAB, SEARCH_TAB)
 FLAT_VIEW, SPACE_VIEW = "2D", "3D"
 
 
@@ -109,6 +113,8 @@ class Page:
         self._space = pn.pane.HTML(
             "", sizing_mode="stretch_both", visible=False, stylesheets=[FRAME]
         )
+        self._legend = pn.pane.HTML(LEGEND, stylesheets=WIDGETS, sizing_mode="stretch_width")
+        self._space_flights = SpaceFlights()
         setup = pn.Column(self._plan_panel.view, self._map_panel.view, sizing_mode="stretch_width")
         self._tabs = pn.Tabs(
             ("Setup", setup),
@@ -128,9 +134,7 @@ class Page:
         frame.fill(
             bar=pn.Row(self._name, self._views, sizing_mode="stretch_width"),
             view=pn.Column(self._canvas, self._space, sizing_mode="stretch_both"),
-            legend=pn.pane.HTML(
-                f'<p class="legend">{LEGEND}</p>', stylesheets=WIDGETS, sizing_mode="stretch_width"
-            ),
+            legend=self._legend,
             status=self._status,
             player=pn.Column(
                 self._player.view, self._search_panel.player, sizing_mode="stretch_width"
@@ -173,6 +177,7 @@ class Page:
             on_tap=self._tap,
             on_step=self._step,
         )
+        self._figure.model.tags += self._space_flights.models
         self._canvas.object = self._figure.model
 
     def _move(self, which: str, x: float, y: float) -> None:
@@ -217,7 +222,7 @@ class Page:
     def _show_paths(self) -> None:
         session = self._session
         found, finder = session.paths.latest, session.paths
-        hidden = self._tabs.active in (TRAINING_TAB, SEARCH_TAB)
+        hidden = self._tabs.active in FLIGHT_TABS
         if not self._changes.of("paths", session.cell, found, finder.busy, finder.problem, hidden):
             return
         centre = None
@@ -245,7 +250,9 @@ class Page:
     def _show_flight(self, flight: Flight, step: int) -> None:
         training = self._session.training
         if training is not None:
-            self._figure.show_flight(flight.position, step, training.settings.agent)
+            agent = training.settings.agent
+            self._figure.show_flight(flight.position, step, agent)
+            self._space_flights.show([FlightLine(flight.position, step, AGENT_COLOURS[agent])])
 
     def _show_search(self) -> None:
         search, complete = self._session.search, self._session.complete_map is not None
@@ -257,9 +264,17 @@ class Page:
     def _show_searches(self, shown: Shown) -> None:
         positions, belief = shown
         self._figure.search.show(positions, belief, self._session.grid)
+        self._space_flights.show(
+            [
+                FlightLine(position, len(position) - 1, colour)
+                for position, colour in zip(positions, COLOURS, strict=True)
+            ]
+        )
 
     def _switch_tab(self, _event: Any) -> None:
         """Show flights while the tab of training or search is open, and paths otherwise."""
+        if self._tabs.active not in FLIGHT_TABS:
+            self._space_flights.show(())
         self._player.show(self._tabs.active == TRAINING_TAB)
         if not self._player.view.visible:
             self._figure.hide_flight()
@@ -269,21 +284,21 @@ class Page:
 
     def _switch_view(self, event: Any) -> None:
         """Show the map, or the building in 3D."""
-        self._space.visible = event.new == SPACE_VIEW
-        self._canvas.visible = event.new == FLAT_VIEW
+        in_space = event.new == SPACE_VIEW
+        self._space.visible, self._canvas.visible = in_space, not in_space
+        self._legend.object = LEGEND_3D if in_space else LEGEND
+        self._search_panel.offer_belief(not in_space)
+        self._space_flights.set_visible(in_space)
         self._show_space()
 
     def _show_space(self) -> None:
-        """Update the 3D view if it is visible: paths, or with the training tab a flight."""
+        """Update the 3D view if it is visible."""
         session, maps = self._session, self._session.maps
         if not self._space.visible or maps.progress is not None:
             return
-        trains = self._tabs.active == TRAINING_TAB
-        found = None if trains else session.paths.latest
-        flight = self._player.flight if trains else None
-        agent = "rss" if session.training is None else session.training.settings.agent
-        if self._changes.of("space", session.plan, maps.latest, found, flight):
-            self._space.object = page_3d(session.plan, found, maps.latest, flight, agent)
+        found = None if self._tabs.active in FLIGHT_TABS else session.paths.latest
+        if self._changes.of("space", session.plan, maps.latest, found):
+            self._space.object = page_3d(session.plan, found, maps.latest)
 
     def _status_words(self) -> str:
         """HTML of the map's progress, or of what is wrong."""

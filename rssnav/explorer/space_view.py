@@ -1,4 +1,4 @@
-"""The view in three dimensions: the building, the map on its floor, paths and a flight."""
+"""The view in three dimensions: the building, the map on its floor, paths and flights."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from trimesh.visual.material import PBRMaterial
 
 from floorplans import FloorPlan
 from floorplans.mesh import mesh_of
-from floorplans.pictures.legend import START
 from floorplans.pictures.viewer_3d import (
     Y_UP,
     ColourBar,
@@ -26,11 +25,11 @@ from floorplans.pictures.viewer_3d import (
 )
 from raytrace import RadioMap
 from rssnav.explorer.cell_paths import CellPaths, path_colours, strongest
+from rssnav.explorer.space_flights import script
 from rssnav.explorer.tracing import TracedMap
-from rssnav.explorer.training import Flight
 from rssnav.maps import cells_inside
 from rssnav.pictures.radio_map import NO_PATH
-from rssnav.pictures.style import AGENT_COLOURS, INK
+from rssnav.pictures.style import INK
 
 LINE_RADIUS = 0.002
 """Radius of a path, as a fraction of the plan's diagonal; a flight is twice as thick."""
@@ -42,11 +41,7 @@ TEXTURE_PX = 1024
 
 
 def page_3d(
-    plan: FloorPlan,
-    found: CellPaths | None = None,
-    traced: TracedMap | None = None,
-    flight: Flight | None = None,
-    agent: str = "rss",
+    plan: FloorPlan, found: CellPaths | None = None, traced: TracedMap | None = None
 ) -> str:
     """HTML of a frame with the plan.
 
@@ -56,32 +51,22 @@ def page_3d(
     found : CellPaths, optional
         Paths of which the strongest are drawn.
     traced : TracedMap, optional
-        Map to lay on the floor.
-    flight : Flight, optional
-        Flight at the height of the map's receivers; it needs the map.
-    agent : str
-        Whose flight it is.
+        Map to lay on the floor; with it the frame shows the flights that it is sent.
     """
     scene = plan_scene(plan, opacity=OPACITY)
     x_min, y_min, x_max, y_max = plan.bounds
     radius_m = LINE_RADIUS * float(np.hypot(x_max - x_min, y_max - y_min))
-    title, bar = plan.name, None
+    title, bar, flights = plan.name, None, ""
     if traced is not None:
         bar = _add_map(scene, plan, traced.radio_map)
-        if flight is not None:
-            height_m = np.full((len(flight.position), 1), traced.radio_map.grid.height_m)
-            line = np.hstack([flight.position, height_m])
-            above_start = np.array([(*flight.position[0], 0.0), line[0]])
-            add_lines(scene, "flight", [line], AGENT_COLOURS[agent], 2 * radius_m)
-            add_lines(scene, "above start", [above_start], START, radius_m)
-            add_points(scene, "UAV", [line[-1]], AGENT_COLOURS[agent])
+        flights = script(traced.radio_map.grid.height_m, 2 * radius_m)
     if found is not None:
         lines = strongest(found)
         add_lines(scene, "paths", lines, path_colours(found.power_dbm[: len(lines)]), radius_m)
         add_points(scene, "receiver", [found.receiver], INK)
         x, y, z = found.receiver
         title = f"{plan.name}: paths to ({x:g}, {y:g}, {z:g}) m"
-    page = escape(scene_html(scene, title, bar))
+    page = escape(scene_html(scene, title, bar).replace("</body>", f"{flights}</body>"))
     style = "width:100%;height:100%;border:0;border-radius:8px"
     return f'<iframe title="3D" sandbox="allow-scripts" srcdoc="{page}" style="{style}"></iframe>'
 

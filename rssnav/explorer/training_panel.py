@@ -205,12 +205,14 @@ def _facts(training: LiveTraining | None) -> str:
     if training is None:
         return '<p class="quiet">The UAV flies from the start until it finds the source.</p>'
     steps, converged = training.steps, training.converged_episode
+    unknown = "not yet" if training.running else "no"
     latest = f"{steps[-1]} steps" if steps.size else "-"
-    return pairs(
+    curve = f"Dots: episodes. Line: mean of {SMOOTHED} episodes. Dashed: fewest possible."
+    return f'<p class="quiet">{curve}</p>' + pairs(
         [
             ("episodes", f"{steps.size} of {training.settings.episodes}"),
-            ("latest", latest),
+            ("latest episode", latest),
             ("fewest possible", f"{training.shortest_steps or '-'} steps"),
-            ("converged", "not yet" if converged is None else f"after episode {converged}"),
+            ("converged", unknown if converged is None else f"after episode {converged}"),
         ]
     )

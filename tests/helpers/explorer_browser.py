@@ -36,6 +36,13 @@ PLACE = f"""([x, y]) => {{ {MAP_VIEW}
     const box = map.canvas_view.el.getBoundingClientRect();
     return [box.left + map.frame.x_scale.compute(x), box.top + map.frame.y_scale.compute(y)];
 }}"""
+FRAME = f"""() => {{ {MAP_VIEW}
+    const box = map.canvas_view.el.getBoundingClientRect(), frame = map.frame.bbox;
+    return [box.left + frame.left, box.top + frame.top, box.left + frame.right,
+      box.top + frame.bottom];
+}}"""
+"""Left, top, right and bottom of the map's frame in the window [px]."""
+
 COLUMNS = f"""(glyph) => {{ {MAP_VIEW}
     const all = map.model.renderers.filter((renderer) => renderer.glyph.type == glyph);
     return all.map((renderer) => [...renderer.data_source.data.x ?? []]);

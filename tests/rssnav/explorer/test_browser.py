@@ -6,6 +6,7 @@ import http.client
 import re
 import socket
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import h5py
@@ -16,8 +17,8 @@ import floorplans
 pytest.importorskip("playwright")
 pytest.importorskip("panel")
 
-from explorer_browser import NEEDS_BROWSER, PHONE, Tab
-from playwright.sync_api import expect
+from explorer_browser import NEEDS_BROWSER, PATIENCE_MS, PHONE, Tab
+from playwright.sync_api import Error, expect
 
 SOURCE = (1.2, 7.9)
 pytestmark = NEEDS_BROWSER
@@ -93,6 +94,54 @@ def test_train_watch_stop_and_play(tab) -> None:
     tab.page.locator("button.pause:visible").click()
 
 
+SPACE = """() => ({
+    counts: uavs.map(({ flown }) => flown.count),
+    at: uavs.map(({ body }) => [body.position.x, -body.position.z, body.position.y]),
+    ends: uavs.map(({ points }) => [points.at(-1).x, -points.at(-1).z, points.at(-1).y]),
+})"""
+"""What is drawn of the flights in 3D, in the axes of the plan [m]."""
+
+
+def space_of(tab: Tab, n_flights: int) -> dict:
+    """What the frame in 3D shows, once it has so many flights."""
+    for _ in range(PATIENCE_MS // 250):
+        with suppress(Error):  # a new map or other paths come with a new frame
+            frame = tab.page.locator("iframe[title='3D']").element_handle().content_frame()
+            if frame.evaluate(f"typeof uavs != 'undefined' && uavs.length == {n_flights}"):
+                return frame.evaluate(SPACE)
+        tab.page.wait_for_timeout(250)
+    raise AssertionError(f"the view does not show {n_flights} flights")
+
+
+def test_flights_play_in_three_dimensions_too(tab) -> None:
+    start = tab.marks()[1]
+    tab.choose("Training")
+    tab.page.get_by_label("Episodes per second").select_option("no limit")
+    tab.page.get_by_role("button", name="Train").click()
+    tab.page.get_by_text(re.compile(r"^Learned in \d+ episodes: step (\d+) of \1")).wait_for()
+    tab.page.get_by_role("button", name="3D", exact=True).click()
+    shown = space_of(tab, 1)
+    assert shown["at"] == shown["ends"]
+    assert shown["at"][0][2] == pytest.approx(2.0)  # the receivers' height
+    tab.page.get_by_role("button", name="Play learned flight").click()
+    tab.page.get_by_text(re.compile(r"^Learned in \d+ episodes: step 2 of")).wait_for()
+    tab.page.locator("button.pause:visible").click()
+    tab.page.wait_for_timeout(200)
+    words = tab.page.get_by_text(re.compile(r"^Learned in \d+ episodes")).inner_text()
+    shown = space_of(tab, 1)
+    assert shown["counts"] == [int(re.search(r"step (\d+) of", words).group(1))]
+    assert shown["at"] != shown["ends"]
+    tab.page.locator("button.first:visible").click()
+    tab.page.get_by_text(re.compile(r"^Episode 1 of 1000: step 0 of")).wait_for()
+    tab.page.wait_for_timeout(200)
+    shown = space_of(tab, 1)
+    assert shown["counts"] == [0]
+    assert shown["at"][0][0] == pytest.approx(start)
+    tab.choose("Setup")
+    space_of(tab, 0)
+    tab.page.get_by_role("button", name="2D", exact=True).click()
+
+
 def test_two_searchers_fly_side_by_side(tab) -> None:
     tab.choose("Search")
     tab.page.get_by_label("Compared with").select_option("Frontier")
@@ -102,6 +151,9 @@ def test_two_searchers_fly_side_by_side(tab) -> None:
     tab.page.get_by_text(re.compile(r"Frontier: step (\d+) of \1$")).wait_for()
     tab.page.locator("button.first:visible").click()
     tab.page.get_by_text(re.compile(r"Frontier: step 0 of")).wait_for()
+    tab.page.get_by_role("button", name="3D", exact=True).click()
+    assert space_of(tab, 2)["counts"] == [0, 0]
+    tab.page.get_by_role("button", name="2D", exact=True).click()
     tab.choose("Help")
     expect(tab.page.locator("button.first:visible")).to_have_count(0)
 

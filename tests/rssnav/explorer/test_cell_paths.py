@@ -25,7 +25,6 @@ from rssnav.explorer.file_buttons import written
 from rssnav.explorer.map_settings import MapSettings
 from rssnav.explorer.space_view import map_picture, page_3d
 from rssnav.explorer.tracing import TracedMap
-from rssnav.explorer.training import Flight
 from rssnav.maps import cells_inside, make_map
 from rssnav.presets import PRESETS
 from rssnav.scenes import scene_of
@@ -157,8 +156,5 @@ def test_the_map_on_the_floor_is_north_up_in_the_colours_of_the_map() -> None:
     strongest = np.unravel_index(np.argmax(np.where(inside, rss, -np.inf)), rss.shape)
     assert green[strongest] == green.max()
     traced = TracedMap(plan, settings, radio_map, True)
-    flight = Flight(1, np.array([[0.5, 3.5], [1.5, 0.5]]), True, learned=True)
-    page = page_3d(plan, None, traced, flight, "location")
-    assert "RSS [dBm]" in page
-    assert "UAV" in page
-    assert "UAV" not in page_3d(plan, None, traced)
+    assert "RSS [dBm]" in page_3d(plan, None, traced)
+    assert "RSS [dBm]" not in page_3d(plan)

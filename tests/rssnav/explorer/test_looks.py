@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 pytest.importorskip("playwright")
 pytest.importorskip("panel")
 
-from explorer_browser import DESKTOP, NEEDS_BROWSER, PHONE, Tab
+from explorer_browser import DESKTOP, FRAME, NEEDS_BROWSER, PHONE, Tab
 from explorer_looks import CONTRAST, FOCUSED, LAYOUT
 
 pytestmark = NEEDS_BROWSER
 MOST_STOPS = 60
+MOST_GAP_PX = 8
 PATHS_OF = "(6.5, 4.5, 2) m"
 
 
@@ -48,7 +50,7 @@ def test_nothing_is_cut_overlaps_or_is_hard_to_read(tab, tmp_path) -> None:
     tab.wait_for_map()
     click_cell(tab, 6.5, 4.5)
     tab.page.get_by_text(PATHS_OF).wait_for()
-    for name in ("Setup", "Paths", "Training", "Files", "Help"):
+    for name in ("Setup", "Paths", "Training", "Search", "Files", "Help"):
         tab.choose(name)
         found[name] = faults(tab)
         tab.page.screenshot(path=tmp_path / f"{name}.png", full_page=True)
@@ -60,6 +62,21 @@ def test_nothing_is_cut_overlaps_or_is_hard_to_read(tab, tmp_path) -> None:
     tab.page.get_by_text("Parameters of Q-learning").click()
     found["parameters"] = faults(tab)
     assert not {name: wrong for name, wrong in found.items() if wrong}
+
+
+def test_axes_are_at_the_plan(tab) -> None:
+    """The frame, at whose edges the axes are, fits the plan when the map has less room too."""
+    tab.choose("Setup")
+    for opened in ("Setup", "Training"):
+        tab.choose(opened)
+        tab.page.wait_for_timeout(500)
+        tab.page.evaluate("scrollTo(0, 0)")
+        left, top, right, bottom = tab.page.evaluate(FRAME)
+        corners = np.array([tab.place(0.0, 0.0), tab.place(12.0, 9.0)])
+        (x0, y1), (x1, y0) = corners
+        gaps = np.array([x0 - left, y0 - top, right - x1, bottom - y1])
+        assert gaps.min() >= 0.0
+        assert gaps.max() <= MOST_GAP_PX
 
 
 def test_tab_leads_through_every_control_in_the_order_of_the_page(tab) -> None:
@@ -76,10 +93,10 @@ def test_tab_leads_through_every_control_in_the_order_of_the_page(tab) -> None:
     assert all(stop["ring"] for stop in stops), stops
     order = [
         "2D", "3D", "Map: arrow keys choose a cell, Enter shows its paths",
-        "Drag source and start", "Setup", "Paths", "Training", "Files", "Help", "Floor plan",
-        "Browse", "Source x [m]", "Source y [m]", "Source z [m]", "Start x [m]", "Start y [m]",
-        "Preset", "Cell size [m]", "Receiver height [m]", "Reflections", "Transmissions",
-        "Power [dBm]", "Frequency [GHz]", "Transmit antenna", "Receive antenna",
+        "Drag source and start", "Setup", "Paths", "Training", "Search", "Files", "Help",
+        "Floor plan", "Browse", "Source x [m]", "Source y [m]", "Source z [m]", "Start x [m]",
+        "Start y [m]", "Preset", "Cell size [m]", "Receiver height [m]", "Reflections",
+        "Transmissions", "Power [dBm]", "Frequency [GHz]", "Transmit antenna", "Receive antenna",
         "Transmit azimuth [\u00b0]", "Receive elevation [\u00b0]",
     ]  # fmt: skip
     assert [label for label in labels if label in order] == order
