@@ -45,7 +45,7 @@ class NavigationEnv(gymnasium.Env[Any, Any]):
         self._n_actions = int(self.action_space.n)
         self.observation_space = observation_space(options, self.mission)
         self._action = np.zeros(1, dtype=np.int64)
-        self._ended = np.zeros(1, dtype=np.int64)
+        self._ended = np.zeros(1, dtype=np.int8)
         self.trail: list[int] = []
         self._lists = _SteadyLists(self._state, options) if self._state.steady else None
 

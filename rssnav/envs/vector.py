@@ -49,7 +49,7 @@ class NavigationVectorEnv(vector.VectorEnv[Any, Any, Any]):
         self.single_observation_space = observation_space(options, self._state.mission)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self._ended = np.zeros(num_envs, dtype=np.int64)
+        self._ended = np.zeros(num_envs, dtype=np.int8)
         self._all = np.ones(num_envs, dtype=np.bool_)
 
     def reset(
@@ -76,7 +76,8 @@ class NavigationVectorEnv(vector.VectorEnv[Any, Any, Any]):
             self._np_random, self._np_random_seed = seeding.np_random(seeds[0])
         self._state.seed(seeds)
         self._state.reset(np.asarray(chosen, dtype=np.bool_))
-        return self._observed(), self._info(self._state.masks)
+        masks = self._state.masks
+        return self._observed(masks), self._info(masks)
 
     def step(
         self, actions: Any
@@ -100,18 +101,18 @@ class NavigationVectorEnv(vector.VectorEnv[Any, Any, Any]):
         if not known:
             raise ValueError(f"actions: expected 0 to {self._n_actions - 1}")
         terminated, truncated = self._ended == FOUND, self._ended == TRUNCATED
-        info = self._info(state.masks)
+        masks = state.masks
+        info = self._info(masks)
         if self._same_step and self._ended.any():
             self._add_final(info, terminated | truncated)
-        return self._observed(), state.fleet.reward.copy(), terminated, truncated, info
+        return self._observed(masks), state.fleet.reward.copy(), terminated, truncated, info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Possible actions of each environment, (N, actions)."""
         return self._state.masks.astype(np.bool_)
 
-    def _observed(self) -> Any:
-        view = self._state.view
-        mission, masks = self._state.mission, self._state.masks
+    def _observed(self, masks: NDArray[np.int8]) -> Any:
+        view, mission = self._state.view, self._state.mission
         return observed(self.options, mission, view.history, view.cells, masks)
 
     def _info(self, masks: NDArray[np.int8]) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Energy of a multirotor: power over speed, hover, and turns.
 
 Power in straight flight is the model of Zeng, Xu and Zhang (IEEE Trans. Wireless Commun. 18(4),
-2019, eq. 12): blade profile, induced and parasite power,
+2019, doi:10.1109/TWC.2019.2902559, eq. 12): blade profile, induced and parasite power,
 
     P(V) = P_0 (1 + 3 V^2 / U_tip^2)
          + P_i (sqrt(1 + V^4 / (4 v_0^4)) - V^2 / (2 v_0^2))^(1/2)
@@ -17,7 +17,8 @@ by weight stay.
 A turn costs energy by one of two models:
 
 - by angle: a constant per degree, measured by Modares, Ghanei, Mastronarde and Dantu (ICRA 2017,
-  "UB-ANC Planner") as 17.3 J per degree beside 116.4 J per metre for a quadcopter;
+  "UB-ANC Planner", doi:10.1109/ICRA.2017.7989732) as 17.3 J per degree beside 116.4 J per metre for
+  a quadcopter;
 - by braking: the craft stops and accelerates again, a multirotor recovering nothing: of its kinetic
   energy 1/2 m V^2 the part along the old direction is lost and must be built up along the new one,
   m V^2 (1 - cos(angle)) / 2 divided by the efficiency of the drive.

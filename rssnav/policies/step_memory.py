@@ -14,7 +14,7 @@ class StepMemory:
 
     Without a plan every step inside the grid may be possible until the UAV is at one of its ends
     and sees that it is not: ways lead straight through what is unknown (the free-space assumption:
-    Koenig, Tovey and Smirnov 2003, doi:10.1016/S0004-3702(03)00062-6).
+    Koenig, Tovey and Smirnov, Artificial Intelligence 147, 2003, pages 253 to 279).
 
     Parameters
     ----------

@@ -30,6 +30,9 @@ def _quick_maps(monkeypatch):
 @pytest.fixture
 def vec_env():
     pytest.importorskip("stable_baselines3")
+    import torch
+
+    torch.set_num_threads(1)
     from rssnav.envs.stable_baselines import NavigationVecEnv
 
     def made(n, **options):
