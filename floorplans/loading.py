@@ -34,7 +34,7 @@ from floorplans.walls import TOLERANCE_M, Opening, Point, Wall
 PLAN_KEYS = (
     "name", "format", "height_m", "floor_material", "floor_thickness_m", "ceiling_material",
     "ceiling_thickness_m", "source", "start", "outline", "holes", "material_edition", "materials",
-    "origin", "frame", "transmitters", "defaults", "walls",
+    "origin", "frame", "ground_margin_m", "transmitters", "defaults", "walls",
 )  # fmt: skip
 ORIGIN_KEYS = ("longitude_deg", "latitude_deg", "rotation_deg")
 FRAME_KEYS = ("x_m", "y_m", "rotation_deg")
@@ -198,6 +198,7 @@ def _read_unchecked(table: Table) -> PlanFile:
         materials=materials,
         material_edition=table.optional_text("material_edition"),
         transmitters=read_transmitters(table),
+        ground_margin_m=table.optional_number("ground_margin_m"),
     )
     return PlanFile(plan, tuple(len(walls) for walls in pieces))
 

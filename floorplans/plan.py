@@ -51,6 +51,9 @@ class FloorPlan(UncheckedPlan):
         Access points and the like, each with an id; the source is not one of them.
     frame : PlanFrame or None
         Where the plan lies in the drawing it was imported from, if it was turned.
+    ground_margin_m : float or None
+        How far the ground around the building reaches beyond the rectangle around its outline [m];
+        None if no path leaves the building.
 
     Raises
     ------

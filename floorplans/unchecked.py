@@ -39,6 +39,7 @@ class UncheckedPlan:
     material_edition: str | None = None
     transmitters: tuple[PlanTransmitter, ...] = ()
     frame: PlanFrame | None = None
+    ground_margin_m: float | None = None
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

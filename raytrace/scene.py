@@ -22,6 +22,9 @@ from raytrace.kernels.plan_view import PlanView
 from raytrace.radio.itu import DEFAULT_EDITION
 from raytrace.radio.materials import Material, Slab
 
+MOST_GROUND_M = 1000.0
+"""Largest margin of ground around a building [m]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:
@@ -74,6 +77,7 @@ class Scene:
         *,
         edition: str = DEFAULT_EDITION,
         edgeless: Sequence[int] | NDArray[np.int64] = (),
+        ground_margin_m: float | None = None,
     ) -> "Scene":
         """Read a mesh of vertical sheets, a floor and a ceiling.
 
@@ -91,6 +95,10 @@ class Scene:
             Of ITU-R P.2040, for materials given by name.
         edgeless
             Indices of materials of clutter: edges between two faces of them do not diffract.
+        ground_margin_m
+            How far the ground reaches beyond the rectangle around the footprint [m]; by default
+            there is none, and no path leaves the building. It lies as high as the floor, and
+            reflects like it. Above it is no ceiling; paths over the roof are not found.
 
         Raises
         ------
@@ -104,7 +112,12 @@ class Scene:
         face_material, slabs, copied = _with_slabs_of_walls(mesh, face_material, slabs)
         clutter |= {copy for copy, original in copied.items() if original in clutter}
         sheets = read_sheets(mesh, face_material)
-        cells = cut_into_cells(sheets)
+        if ground_margin_m is not None and not 0.0 < ground_margin_m <= MOST_GROUND_M:
+            raise SceneError(
+                f"ground_margin_m = {ground_margin_m:g}: expected more than 0, at most "
+                f"{MOST_GROUND_M:g} m"
+            )
+        cells = cut_into_cells(sheets, ground_margin_m)
         return cls(
             sheets.height_m,
             sheets.footprint,

@@ -51,6 +51,7 @@ def scene_of(plan: FloorPlan, edition: str | None = None) -> Scene:
             materials,
             edition=edition,
             edgeless=np.flatnonzero(walls.clutter),
+            ground_margin_m=plan.ground_margin_m,
         )
     except SceneError as error:
         raise SceneError(f"plan {plan.name!r}: {error}") from error

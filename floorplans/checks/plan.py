@@ -140,6 +140,8 @@ def _check_slabs(plan: UncheckedPlan) -> None:
     check_slab(plan.ceiling_material, plan.ceiling_thickness_m, own, (), "ceiling_")
     check_number(plan.floor_thickness_m, LENGTH, ("floor_thickness_m",))
     check_number(plan.ceiling_thickness_m, LENGTH, ("ceiling_thickness_m",))
+    if plan.ground_margin_m is not None:
+        check_number(plan.ground_margin_m, LENGTH, ("ground_margin_m",))
 
 
 def _check_points(plan: UncheckedPlan) -> None:

@@ -51,6 +51,8 @@ def _top_level(plan: UncheckedPlan) -> Iterator[str]:
     if plan.frame is not None:
         numbers = {key: _number(getattr(plan.frame, key)) for key in ("x_m", "y_m", "rotation_deg")}
         yield f"frame = {{ {', '.join(f'{key} = {text}' for key, text in numbers.items())} }}"
+    if plan.ground_margin_m is not None:
+        yield f"ground_margin_m = {_number(plan.ground_margin_m)}"
 
 
 def _origin(origin: GeoOrigin) -> Iterator[str]:

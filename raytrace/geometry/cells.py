@@ -8,14 +8,16 @@ between two cells, without a wall).
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
 from scipy.spatial import KDTree
+from shapely.geometry.base import BaseGeometry
 
 from raytrace.arrays import Bools, Floats, Ints
 from raytrace.errors import SceneError
-from raytrace.geometry.chains import Segment, Vertex
+from raytrace.geometry.chains import Segment, Vertex, vertex_at
 from raytrace.geometry.convex_parts import Edge, Ring, convex_parts, edges_of, undirected
 from raytrace.geometry.junctions import NEAR_M
 from raytrace.geometry.noding import node
@@ -42,8 +44,16 @@ class CellComplex:
     wall_segments: tuple[tuple[int, int, Profile], ...]
 
 
-def cut_into_cells(sheets: Sheets) -> CellComplex:
-    """Cut the footprint of a building into convex cells.
+def cut_into_cells(sheets: Sheets, ground_margin_m: float | None = None) -> CellComplex:
+    """Cut the footprint of a building into convex cells, and the ground around it.
+
+    Parameters
+    ----------
+    sheets
+        The building.
+    ground_margin_m
+        The ground is the rectangle around the footprint, this much wider on each side [m], without
+        the footprint; None for no ground.
 
     Raises
     ------
@@ -51,7 +61,14 @@ def cut_into_cells(sheets: Sheets) -> CellComplex:
         Where the walls do not enclose the footprint.
     """
     walls, cuts = node(sheets.panels, sheets.footprint)
-    faces = _faces([*walls, *cuts], sheets)
+    region = sheets.footprint
+    if ground_margin_m is not None:
+        x1, y1, x2, y2 = sheets.footprint.bounds
+        margin = ground_margin_m
+        region = shapely.box(x1 - margin, y1 - margin, x2 + margin, y2 + margin)
+        around = [vertex_at(v) for v in shapely.get_coordinates(region.exterior)]
+        cuts |= set(pairwise(around))
+    faces = _faces([*walls, *cuts], region)
     index: dict[Vertex, int] = {}
     for a, b in [*walls, *cuts]:
         index.setdefault(a, len(index))
@@ -60,7 +77,9 @@ def cut_into_cells(sheets: Sheets) -> CellComplex:
     rings = convex_parts(faces, index, panel_of)
     outlines = [_outline(ring, panel_of) for ring in rings]
     vertices = _unsnapped(np.array(list(index)), sheets)
-    view = _plan_view(rings, outlines, vertices, sheets.planes)
+    middles = [vertices[ring].mean(axis=0) for ring in rings]
+    is_outdoors = ~shapely.contains_xy(sheets.footprint, np.array(middles))
+    view = _plan_view(rings, outlines, vertices, sheets.planes, is_outdoors)
     segments = tuple((a, b, panel.profile) for (a, b), panel in panel_of.items())
     return CellComplex(view, vertices, segments)
 
@@ -78,12 +97,12 @@ def _unsnapped(vertices: Floats, sheets: Sheets) -> Floats:
     return exact
 
 
-def _faces(segments: list[Segment], sheets: Sheets) -> list[shapely.Polygon]:
-    """Polygons that the segments enclose within the footprint."""
+def _faces(segments: list[Segment], region: BaseGeometry) -> list[shapely.Polygon]:
+    """Polygons that the segments enclose within a region."""
     lines = [shapely.LineString(segment) for segment in segments]
     polygons = shapely.get_parts(shapely.polygonize(lines))
-    inside = [p for p in polygons if sheets.footprint.covers(p.representative_point())]
-    open_floor = sheets.footprint.difference(shapely.union_all(inside))
+    inside = [p for p in polygons if region.covers(p.representative_point())]
+    open_floor = region.difference(shapely.union_all(inside))
     wide = open_floor.buffer(-NEAR_M)
     if not wide.is_empty:
         missing = wide.representative_point()
@@ -118,6 +137,7 @@ def _plan_view(
     outlines: list[list[tuple[int, Panel | None]]],
     vertices: Floats,
     planes: Floats,
+    is_outdoors: Bools,
 ) -> PlanView:
     """Arrays of the cells' edges, cell after cell, counter-clockwise."""
     corners = [[v for v, _ in outline] for outline in outlines]
@@ -127,6 +147,8 @@ def _plan_view(
     number = {(int(a), int(b)): k for k, (a, b) in enumerate(ends)}
     twin = np.array([number.get((int(b), int(a)), -1) for a, b in ends], dtype=np.int64)
     passable = np.array([p is None or not p.profile.is_solid for p in panels])
+    borders = np.array([p is None for p in panels]) & is_outdoors[cell] & (twin < 0)
+    passable &= ~borders
     _refuse_open(passable & (twin < 0), vertices[ends])
     profiles = list(dict.fromkeys(p.profile for p in panels if p is not None))
     plane, line = _lines(panels, vertices[ends], planes)
@@ -145,6 +167,7 @@ def _plan_view(
         behind_first=_offsets(behind),
         behind=np.array([f for edges in behind for f in edges], dtype=np.int64),
         cell_of=cell,
+        is_outdoors=is_outdoors,
         profile_intervals=_offsets([p.tops for p in profiles]),
         interval_top=np.array([t for p in profiles for t in p.tops]),
         interval_slab=np.array([m for p in profiles for m in p.materials], dtype=np.int64),

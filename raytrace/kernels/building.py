@@ -19,12 +19,15 @@ class Building(NamedTuple):
         Of the ceiling [m].
     floor, ceiling
         Their slabs.
+    has_outdoors
+        Whether some cells of the plan have no ceiling.
     """
 
     plan: PlanView
     height: float
     floor: int
     ceiling: int
+    has_outdoors: bool
 
 
 class Receivers(NamedTuple):

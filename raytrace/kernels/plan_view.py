@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from raytrace.arrays import Floats, Ints
+from raytrace.arrays import Bools, Floats, Ints
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import (
     Lanes,
@@ -52,6 +52,8 @@ class PlanView(NamedTuple):
         behind[behind_first[e]:behind_first[e + 1]].
     cell_of
         (n_edges,) the cell of each edge.
+    is_outdoors
+        (n_cells,) whether a cell has no ceiling.
     profile_intervals
         (n_profiles + 1,) height intervals of profile p are
         profile_intervals[p]:profile_intervals[p + 1].
@@ -71,6 +73,7 @@ class PlanView(NamedTuple):
     behind_first: Ints
     behind: Ints
     cell_of: Ints
+    is_outdoors: Bools
     profile_intervals: Ints
     interval_top: Floats
     interval_slab: Ints

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Floats, Int32s, Ints
-from raytrace.kernels.beams import EDGE, IMAGE_X, IMAGE_Y, INTERACTIONS, PARENT, REFLECTED
+from raytrace.kernels.beams import CELL, EDGE, IMAGE_X, IMAGE_Y, INTERACTIONS, PARENT, REFLECTED
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import WIDTH, Lanes, lanes_of, load, maximum, sqrt, store
 from raytrace.kernels.plan_view import WALL, PlanView, cross
@@ -23,8 +23,9 @@ DISTANCE, SKEW, NORMAL, POINT_X, POINT_Y = range(5)
 """Columns of `Leg.interactions`: horizontal distance from the root [m]; sine and cosine of the
 plan-view direction against the wall's normal; the point [m]."""
 
-TYPE, SURFACE = range(2)
-"""Columns of `Leg.types`: one of the four above; the slab (full wall) or the profile."""
+TYPE, SURFACE, OUTDOORS = range(3)
+"""Columns of `Leg.types`: one of the four above; the slab (full wall) or the profile; whether the
+leg is outdoors before the interaction. The row after the last one holds that of the end."""
 
 NEAREST_M = 1e-9
 """Shortest horizontal leg [m]: a receiver straight above the transmitter is moved this far off."""
@@ -36,9 +37,10 @@ class Leg(NamedTuple):
     Attributes
     ----------
     interactions
-        (n, 5, 8) float64, see `DISTANCE` and its neighbours.
+        (n + 1, 5, 8) float64, see `DISTANCE` and its neighbours; the last row holds the distance of
+        the end.
     types
-        (n, 2) int64, see `TYPE` and `SURFACE`.
+        (n + 1, 3) int64, see `TYPE`, `SURFACE` and `OUTDOORS`.
     """
 
     interactions: Floats
@@ -47,8 +49,8 @@ class Leg(NamedTuple):
 
 def new_leg(link: Int32s) -> Leg:
     """Legs, uninitialised, with capacity for the interactions of any of the beams."""
-    n = max_interactions(link)
-    return Leg(np.empty((n, 5, WIDTH)), np.empty((n, 2), np.int64))
+    n = max_interactions(link) + 1
+    return Leg(np.empty((n, 5, WIDTH)), np.empty((n, 3), np.int64))
 
 
 def max_interactions(link: Int32s) -> int:
@@ -99,6 +101,8 @@ def unfold(
     ux, uy = (x - px) / length, (y - py) / length
     n = link[i, INTERACTIONS]
     rest, k = length, n
+    store(leg.interactions[n, DISTANCE], length)
+    leg.types[n, OUTDOORS] = view.is_outdoors[link[i, CELL]]
     while k > 0:
         e = link[i, EDGE]
         if e < 0:
@@ -115,6 +119,7 @@ def unfold(
         x, y = px + t * (x - px), py + t * (y - py)
         rest = rest * t
         i = link[i, PARENT]
+        leg.types[k, OUTDOORS] = view.is_outdoors[link[i, CELL]]
         nx, ny = view.plane[e, 0], view.plane[e, 1]
         normal = nx * ux + ny * uy
         if not passed:  # the direction is mirrored, since the reflection may be at the root itself
@@ -142,8 +147,8 @@ def type_and_surface(view: PlanView, e: int, passed: bool) -> tuple[int, int]:
 
 @jit(inline=True)
 def has_height_limits(leg: Leg, n: int) -> bool:
-    """Whether legs meet a partial wall or go through a wall, so that their validity varies."""
-    met = False
+    """Whether validity varies: legs meet a partial wall, go through a wall, or are outdoors."""
+    met = leg.types[n, OUTDOORS] > 0
     for k in range(n):
-        met = met or leg.types[k, TYPE] != REFLECT_WALL
+        met = met or leg.types[k, TYPE] != REFLECT_WALL or leg.types[k, OUTDOORS] > 0
     return met

@@ -7,10 +7,11 @@ paths that pass beside it, with their weight halved: one-sided evaluations (docs
 
 from raytrace.kernels.building import Building
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.lanes import Lanes, Mask, all_false, any_of, lanes_of, load, where
+from raytrace.kernels.lanes import Lanes, Mask, all_false, any_of, floor, lanes_of, load, where
 from raytrace.kernels.plan_view import GRAZING_M, at_horizontal_edge, in_building, slabs_at
 from raytrace.kernels.unfolding import (
     DISTANCE,
+    OUTDOORS,
     PASS_PARTIAL,
     PASS_WALL,
     REFLECT_WALL,
@@ -32,10 +33,24 @@ below and above it."""
 
 
 @jit(inline=True)
+def meets_sky(building: Building, leg: Leg, n: int, z_root: Lanes, slope: Lanes) -> Mask:
+    """Which legs are reflected at the ceiling where there is none; arguments as for `walls_met`."""
+    half = 0.5 / building.height
+    before, found = floor(z_root * half + 0.5), all_false()
+    for k in range(n + 1):
+        z = z_root + slope * load(leg.interactions[k, DISTANCE])
+        storey = floor(z * half + 0.5)
+        if leg.types[k, OUTDOORS]:
+            found = found | (storey > before) | (storey < before)
+        before = storey
+    return found
+
+
+@jit(inline=True)
 def walls_met(
     building: Building, leg: Leg, n: int, z_root: Lanes, slope: Lanes, offset: float
 ) -> tuple[Lanes, Mask]:
-    """Numbers of transmissions on legs; below 0 for one that is reflected where there is no wall.
+    """Numbers of transmissions on legs; below 0 for one that is reflected where nothing stands.
 
     Parameters
     ----------
@@ -52,6 +67,10 @@ def walls_met(
         Numbers of transmissions, and which legs graze a horizontal edge.
     """
     n_transmissions, grazing = lanes_of(0.0), all_false()
+    if building.has_outdoors:
+        n_transmissions = where(
+            meets_sky(building, leg, n, z_root, slope), INVALID, n_transmissions
+        )
     for k in range(n):
         kind, surface = leg.types[k, TYPE], leg.types[k, SURFACE]
         if kind == REFLECT_WALL:

@@ -53,7 +53,7 @@ class LegsIn(NamedTuple):
     angles
         (n, 7) see `wedge.FaceAngles`.
     interactions, types
-        (n, n_max, 5, 8), (n, n_max, 2) their legs, the same in all eight lanes.
+        (n, n_max + 1, 5, 8), (n, n_max + 1, 3) their legs, the same in all eight lanes.
     """
 
     order: Ints
@@ -130,7 +130,7 @@ def angles_of(legs: LegsIn, p: int) -> FaceAngles:
 
 def leg_bytes(link: Int32s) -> int:
     """Size of a row of `LegsIn` where the legs are those of some beams."""
-    return 15 * 8 + max_interactions(link) * (5 * WIDTH + 2) * 8
+    return 15 * 8 + (max_interactions(link) + 1) * (5 * WIDTH + 3) * 8
 
 
 def legs_to_edge(
@@ -165,8 +165,8 @@ def legs_to_edge(
         np.empty((n, 2)),
         np.empty(n, np.bool_),
         np.empty((n, 7)),
-        np.empty((n, n_max, 5, WIDTH)),
-        np.empty((n, n_max, 2), np.int64),
+        np.empty((n, n_max + 1, 5, WIDTH)),
+        np.empty((n, n_max + 1, 3), np.int64),
     )
     kept = fill_legs(view, tree, beams, weight, edge, legs, guard)
     columns: Any = legs

@@ -237,7 +237,13 @@ def trace_geometry(
     heights, level = np.unique(receivers[:, 2], return_inverse=True)
     images = [image_heights(h, height, order) for h in heights]
     return TraceGeometry(
-        Building(scene.view, height, scene.floor_slab, scene.ceiling_slab),
+        Building(
+            scene.view,
+            height,
+            scene.floor_slab,
+            scene.ceiling_slab,
+            bool(scene.view.is_outdoors.any()),
+        ),
         np.array(position),
         image_heights(position[2], height, order),
         Receivers(

@@ -106,6 +106,8 @@ class Building:
         (material, thickness [m]) of the slab numbers.
     floor, ceiling
         Their slabs.
+    ground_margin_m
+        See `Scene.from_mesh`.
     """
 
     outline: tuple[Point, ...]
@@ -114,12 +116,13 @@ class Building:
     slabs: tuple[tuple[str, float], ...] = SLABS
     floor: int = CONCRETE
     ceiling: int = CEILING_BOARD
+    ground_margin_m: float | None = None
 
     @cached_property
     def triangles(self) -> Floats:
         """(n, 3, 3) [m] walls, then floor, then ceiling."""
         walls = [_rectangle(s) for s in self._solid]
-        slabs = [_slab(self.outline, z) for z in (0.0, self.height_m)]
+        slabs = [_slab(shapely.Polygon(self.outline), z) for z in (0.0, self.height_m)]
         return np.concatenate([*walls, *slabs])
 
     @cached_property
@@ -136,7 +139,20 @@ class Building:
     @cached_property
     def scene(self) -> Scene:
         """The tracer's reading of it."""
-        return Scene.from_mesh(mesh_of(self.triangles), self.triangle_slab, self.slabs)
+        margin = self.ground_margin_m
+        return Scene.from_mesh(
+            mesh_of(self.triangles), self.triangle_slab, self.slabs, ground_margin_m=margin
+        )
+
+    @cached_property
+    def ground(self) -> Floats:
+        """(n, 3, 3) triangles of the ground around it [m]."""
+        if self.ground_margin_m is None:
+            return np.zeros((0, 3, 3))
+        footprint = shapely.Polygon(self.outline)
+        (x1, y1, x2, y2), margin = footprint.bounds, self.ground_margin_m
+        whole = shapely.box(x1 - margin, y1 - margin, x2 + margin, y2 + margin)
+        return _slab(whole.difference(footprint), 0.0)
 
     def moved(self, matrix: Floats, shift: Floats) -> "Building":
         """Return the building with every plan-view point p at matrix @ p + shift."""
@@ -174,8 +190,8 @@ def _rectangle(sheet: Sheet) -> Floats:
     return np.array([[a, b, c], [a, c, d]])
 
 
-def _slab(outline: Sequence[Point], z: float) -> Floats:
-    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(shapely.Polygon(outline)))
+def _slab(outline: shapely.Polygon, z: float) -> Floats:
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(outline))
     corners = np.array([shapely.get_coordinates(p)[:3] for p in parts])
     return np.concatenate([corners, np.full((*corners.shape[:2], 1), z)], axis=2)
 

@@ -20,7 +20,11 @@ def off_ties(position: tuple[float, float, float]) -> tuple[float, float, float]
 
 def facets_of(building: Building) -> Facets:
     """Return the building as the brute force sees it."""
-    return Facets(building.triangles, building.triangle_slab)
+    ground = np.full(len(building.ground), building.floor)
+    return Facets(
+        np.concatenate([building.triangles, building.ground]),
+        np.concatenate([building.triangle_slab, ground]),
+    )
 
 
 def as_found(paths: Paths) -> Found:

@@ -37,6 +37,7 @@ def view_of_profiles() -> PlanView:
         behind_first=numbers,
         behind=numbers,
         cell_of=numbers,
+        is_outdoors=np.zeros(0, np.bool_),
         profile_intervals=np.cumsum([0, *map(len, PROFILES)]),
         interval_top=np.array([top for top, _ in intervals]),
         interval_slab=np.array([slab for _, slab in intervals]),
