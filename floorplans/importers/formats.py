@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+from codecs import BOM_UTF8
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -62,12 +63,12 @@ class Format:
 
 
 def _is_dxf(head: bytes) -> bool:
-    text = head.removeprefix(b"\xef\xbb\xbf")
-    return text.startswith(b"AutoCAD Binary DXF") or text.split(None, 1)[:1] in ([b"0"], [b"999"])
+    binary = head.startswith(b"AutoCAD Binary DXF")
+    return binary or head.split(None, 1)[:1] in ([b"0"], [b"999"])
 
 
 def _is_json(head: bytes) -> bool:
-    return head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"{" or head.startswith(_ZIP)
+    return head.lstrip()[:1] == b"{" or head.startswith(_ZIP)
 
 
 def _is_ros_map(head: bytes) -> bool:
@@ -205,7 +206,7 @@ def read_draft(path: Path, options: ImportOptions, report: Report = no_report) -
         return kind.reader()(path, options, report)
     try:
         with path.open("rb") as file:
-            head = file.read(_HEAD_BYTES)
+            head = file.read(_HEAD_BYTES).removeprefix(BOM_UTF8)
     except OSError as error:
         raise PlanError(f"the file cannot be read: {error.strerror}", origin=str(path)) from error
     if not head:

@@ -22,7 +22,7 @@ def read_layers(path: str | Path) -> dict[str, str]:
         they are used, since they depend on the format of the imported file.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = Path(path).read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
         raise PlanError(f"not UTF-8 text: {error.reason}", origin=str(path)) from error
     except OSError as error:

@@ -69,7 +69,7 @@ _WORDS: Lists[Kind] = (
         "sanit", "plumb", "fixt", "equip", "light", "elec", "hvac", "duct", "pipe", "stair",
         "trepp", "escal", "floor", "boden", "ceil", "decke", "roof", "dach", "area", "room", "raum",
         "space", "zone", "rail", "appl", "cabinet", "casework", "logo", "clng", "flor", "evtr",
-        "lift",
+        "lift", "source ", "start ", "transmitter",
     )),
 )  # fmt: skip
 """The first match decides."""

@@ -217,6 +217,8 @@ def _wall_on(
 
 def _with_openings_on(wall: Wall, bare: Wall) -> Wall:
     """Keep only the openings of a wall whose middles lie beside another wall."""
+    if not wall.openings:
+        return wall
 
     def beside(opening: Opening) -> bool:
         middle = wall.point_at(opening.offset_m + opening.width_m / 2)

@@ -215,28 +215,28 @@ def _refuse_open(lost: Bools, ends: Floats) -> None:
 
 def _lines(panels: list[Panel | None], ends: Floats, planes: Floats) -> tuple[Floats, Ints]:
     """Line (n, 3) of each edge as normal and offset, and a number that collinear edges share."""
-    lines = [tuple(p) for p in planes]
-    plane = np.empty((len(panels), 3))
+    lines, n_lines = np.empty((len(planes) + len(panels), 3)), len(planes)
+    lines[:n_lines] = planes
     number = np.empty(len(panels), dtype=np.int64)
     for k, panel in enumerate(panels):
         if panel is not None and _off(ends[k], planes[panel.plane]) < GRAZING_M:
             number[k] = panel.plane
-        else:
-            number[k] = _line_through(ends[k], lines)
-        plane[k] = lines[number[k]]
-    return plane, number
+            continue
+        off = _off(ends[k], lines[:n_lines])
+        number[k] = int(off.argmin()) if off.min(initial=np.inf) < GRAZING_M else n_lines
+        if number[k] == n_lines:
+            lines[n_lines] = _line_through(ends[k])
+            n_lines += 1
+    return lines[number], number
 
 
-def _line_through(ends: Floats, lines: list[tuple[float, ...]]) -> int:
-    """Return the number of the line through two points, which is appended where it is new."""
-    off = _off(ends, np.array(lines).reshape(-1, 3))
-    if len(off) and off.min() < GRAZING_M:
-        return int(off.argmin())
+def _line_through(ends: Floats) -> tuple[float, float, float]:
+    """Unit normal and offset of the line through two points."""
     u = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
-    lines.append((-u[1], u[0], float(-u[1] * ends[0, 0] + u[0] * ends[0, 1])))
-    return len(lines) - 1
+    return (-u[1], u[0], float(-u[1] * ends[0, 0] + u[0] * ends[0, 1]))
 
 
 def _off(ends: Floats, lines: Floats) -> Floats:
     """Distance from lines (..., 3) of the one of two points that is farther away [m]."""
-    return np.abs(lines[..., :2] @ ends.T - lines[..., 2:]).max(axis=-1)
+    across = np.abs(lines[..., :2] @ ends.T - lines[..., 2:])
+    return np.maximum(across[..., 0], across[..., 1])

@@ -125,11 +125,10 @@ class Chains:
 
     def _met(self, start: Floats, ahead: Floats) -> NDArray[np.int64]:
         """Numbers of the chains that a ray may meet: those that are not on one side of it."""
-        ends = self._ends - start
-        side = ahead[0] * ends[..., 1] - ahead[1] * ends[..., 0]
-        along = ends @ ahead
-        beside = (side.min(axis=1) > AIM_M) | (side.max(axis=1) < -AIM_M)
-        return np.flatnonzero(~beside & (along.max(axis=1) > -AIM_M))
+        x, y = (self._ends - start).transpose(2, 1, 0)
+        left, along = ahead[0] * y - ahead[1] * x, ahead[0] * x + ahead[1] * y
+        beside = (np.minimum(*left) > AIM_M) | (np.maximum(*left) < -AIM_M)
+        return np.flatnonzero(~beside & (np.maximum(*along) > -AIM_M))
 
     def _first_of(self, found: NDArray[np.int64]) -> Vertex:
         """Vertex of a number; of several, the first in the order of the chains."""

@@ -219,17 +219,21 @@ def _fill(triangles: Floats, materials: Ints, s: Floats, z: Floats, corners: Flo
     """Material (len(s) - 1, len(z) - 1) of each rectangle of a plane, or `OPEN`."""
     middle_s, middle_z = 0.5 * (s[1:] + s[:-1]), 0.5 * (z[1:] + z[:-1])
     grid_s, grid_z = np.meshgrid(middle_s, middle_z, indexing="ij")
+    centres = np.array(shapely.points(grid_s.ravel(), grid_z.ravel()), dtype=np.object_)
     cell_area = np.outer(np.diff(s), np.diff(z))
-    filled = np.full(grid_s.shape, OPEN, dtype=np.int64)
+    filled = np.full(cell_area.shape, OPEN, dtype=np.int64)
     for material in dict.fromkeys(materials.tolist()):
-        sheet = shapely.union_all(shapely.polygons(triangles[materials == material]))
-        shapely.prepare(sheet)
-        inside = shapely.contains_xy(sheet, grid_s, grid_z)
-        if abs(cell_area[inside].sum() - sheet.area) > 1e-6:
+        sheet = np.array(shapely.polygons(triangles[materials == material]), dtype=np.object_)
+        within, _ = shapely.STRtree(sheet).query(centres, "intersects")
+        inside = np.bincount(within, minlength=grid_s.size).reshape(grid_s.shape) > 0
+        covered = float(np.sum(shapely.area(sheet)))
+        if abs(cell_area[inside].sum() - covered) > _SAME_M2:  # triangles may overlap
+            covered = shapely.union_all(sheet).area
+        if abs(cell_area[inside].sum() - covered) > _SAME_M2:
             (x1, y1), (x2, y2) = corners[0], corners[-1]
             raise SceneError(
                 f"the wall from ({x1:g}, {y1:g}) to ({x2:g}, {y2:g}) is not made of vertical "
-                f"rectangles: its triangles cover {sheet.area:.6f} m2, the rectangles "
+                f"rectangles: its triangles cover {covered:.6f} m2, the rectangles "
                 f"{cell_area[inside].sum():.6f} m2"
             )
         filled[inside & (filled == OPEN)] = material
@@ -248,3 +252,7 @@ def _distinct(values: Floats, apart: float) -> tuple[Floats, Ints, Ints]:
     number = np.empty(len(values), dtype=np.int64)
     number[order] = np.cumsum(new) - 1
     return values[order][new], order[new], number
+
+
+_SAME_M2 = 1e-6
+"""Areas that differ by less are the same [m2]."""

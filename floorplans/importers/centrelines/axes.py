@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
@@ -22,6 +23,11 @@ _LIKE = 1.4  # ratio of thicknesses up to which two sections of a line are one w
 _ACROSS_M = 1.0  # gap up to which a short section is joined: the thickness of a wall across
 _EDGE_M = 0.01  # beside the ends of a gap, which are edges of the solid
 _SHORT = 2.0  # times its thickness: a shorter section takes the thickness of its neighbour
+
+
+def point_of(xy: NDArray[np.float64]) -> Point:
+    """Coordinates (2,) as a point."""
+    return (float(xy[0]), float(xy[1]))
 
 
 _IsWall = Callable[[float, float, float], bool]
@@ -77,6 +83,7 @@ def on_common_lines(axes: list[Axis], solid: BaseGeometry) -> list[Axis]:
     -------
     list of Axis
     """
+    shapely.prepare(solid)
     return _without_duplicates([a for group in _groups(axes) for a in _on_one_line(group, solid)])
 
 
@@ -85,10 +92,9 @@ def _groups(axes: list[Axis]) -> list[list[Axis]]:
     groups: list[list[Axis]] = []
     leaders = _Lines(len(axes))
     for axis in sorted(axes, key=lambda axis: -axis.length_m):
-        ends = leaders.across(axis)
         parallel = np.abs(leaders.along @ axis.vector) >= _SAME_DIRECTION * axis.length_m
         apart = _OFFSET_FRACTION * np.maximum(leaders.thickness_m, axis.thickness_m)
-        near = np.flatnonzero(parallel & (np.abs(ends).max(axis=1) <= apart))
+        near = np.flatnonzero(parallel & (leaders.beside(axis) <= apart))
         if near.size:
             groups[int(near[0])].append(axis)
         else:
@@ -110,6 +116,7 @@ class _Lines:
     def __init__(self, capacity: int) -> None:
         self._n = 0
         self._start, self._along = np.empty((capacity, 2)), np.empty((capacity, 2))
+        self._offset_m = np.empty(capacity)
         self._length_m, self._thickness_m = np.empty(capacity), np.empty(capacity)
 
     @property
@@ -132,19 +139,22 @@ class _Lines:
         """Add an axis."""
         k = self._n
         self._start[k], self._along[k] = axis.start, axis.vector / axis.length_m
+        (x, y), (u_x, u_y) = self._start[k], self._along[k]
+        self._offset_m[k] = u_x * y - u_y * x
         self._length_m[k], self._thickness_m[k] = axis.length_m, axis.thickness_m
         self._n += 1
 
-    def across(self, axis: Axis) -> NDArray[np.float64]:
-        """Offsets of an axis's ends to the left of each line (n, 2) [m]."""
-        ends = np.array([axis.start, axis.end])[None] - self.start[:, None]
-        return self.along[:, :1] * ends[..., 1] - self.along[:, 1:] * ends[..., 0]
+    def beside(self, axis: Axis) -> NDArray[np.float64]:
+        """Distance of an axis's farther end from each line, (n,) [m]."""
+        (x_0, y_0), (x_1, y_1) = axis.start, axis.end
+        turned = np.array([[y_0, y_1], [-x_0, -x_1]])
+        across = np.abs(self.along @ turned - self._offset_m[: self._n, None])
+        return np.maximum(across[:, 0], across[:, 1])
 
     def covers(self, axis: Axis) -> bool:
         """Whether an axis runs within the wall of one of the lines, which are longer."""
         parallel = np.abs(self.along @ axis.vector) >= _DUPLICATE_DIRECTION * axis.length_m
-        beside = np.abs(self.across(axis)).max(axis=1)
-        near = beside <= np.maximum(self.thickness_m, axis.thickness_m) / 2
+        near = self.beside(axis) <= np.maximum(self.thickness_m, axis.thickness_m) / 2
         k = np.flatnonzero(parallel & near)
         ends = np.array([axis.start, axis.end])[None] - self.start[k, None]
         s = np.sort(np.einsum("kec,kc->ke", ends, self.along[k]), axis=1)
@@ -163,12 +173,11 @@ def _on_one_line(group: list[Axis], solid: BaseGeometry) -> list[Axis]:
     offset = float(np.average((ends @ across).mean(axis=1), weights=areas))
 
     def point(s: float, beside_m: float = 0.0) -> Point:
-        x, y = along * s + across * (offset + beside_m)
-        return float(x), float(y)
+        return point_of(along * s + across * (offset + beside_m))
 
     def is_solid(low: float, high: float, beside_m: float = 0.0) -> bool:
         ends = [point(low, beside_m), point(high, beside_m)]
-        return high <= low or LineString(ends).within(solid)
+        return high <= low or solid.contains(LineString(ends))
 
     def is_wall(low: float, high: float, thickness_m: float) -> bool:
         """Whether only solid lies between, and over a longer gap no wall twice as thick."""

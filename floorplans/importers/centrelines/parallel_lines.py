@@ -10,6 +10,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from floorplans.importers.centrelines.sections import linestrings
 from floorplans.walls import Interval, Point, complement
 
 MIN_THICKNESS_M = 0.02
@@ -57,8 +58,8 @@ def _areas(strips: Sequence[Strip], extension_m: NDArray[np.float64] | float) ->
 class _Face:
     """A line: start, unit direction and length, and the sections already used as a wall's side."""
 
-    start: NDArray[np.float64]
-    along: NDArray[np.float64]
+    start: Point
+    along: Point
     length: float
     used: list[Interval] = field(default_factory=list[Interval])
 
@@ -69,6 +70,15 @@ class _Face:
             if min(used_low, high) - position > _MIN_OVERLAP_M:
                 yield position, min(used_low, high)
             position = max(position, used_high)
+
+    def at(self, s: float, t: float = 0.0) -> Point:
+        """Place at a length along the line and a distance to its left [m]."""
+        (x, y), (ux, uy) = self.start, self.along
+        return (x + ux * s - uy * t, y + uy * s + ux * t)
+
+    def part(self, low: float, high: float) -> _Face:
+        """Section of the line, of which nothing is used."""
+        return _Face(self.at(low), self.along, high - low)
 
 
 @dataclass(frozen=True)
@@ -112,35 +122,65 @@ def strips_of_lines(segments: Segments, max_thickness_m: float, heavy_m: float =
     segments, steps, lengths = (x[lengths > 1e-6] for x in (segments, steps, lengths))
     if not len(segments):
         return StripWalls((), segments)
+    starts, along = segments[:, 0].tolist(), (steps / lengths[:, None]).tolist()
     faces = [
-        _Face(segment[0], step / length, float(length))
-        for segment, step, length in zip(segments, steps, lengths, strict=True)
+        _Face((x, y), (ux, uy), length)
+        for (x, y), (ux, uy), length in zip(starts, along, lengths.tolist(), strict=True)
     ]
-    strips = list(_strips(faces, segments, max_thickness_m))
+    strips = list(_strips(faces, max_thickness_m))
     if heavy_m > max_thickness_m:
         strips += _heavy_strips(faces, heavy_m)
     areas = _areas(strips, 0.0)
     return StripWalls((*areas, *_corners(strips, areas)), _singles(faces, strips))
 
 
-def _strips(faces: list[_Face], segments: Segments, max_thickness_m: float) -> Iterator[Strip]:
+def _strips(faces: list[_Face], max_thickness_m: float) -> Iterator[Strip]:
     """Strips between pairs of faces, thin ones first."""
-    for thickness_m, i, j in _pairs(faces, segments, max_thickness_m):
+    for thickness_m, i, j in _pairs(faces, max_thickness_m):
         if thickness_m >= MIN_THICKNESS_M:
             yield from _between(faces[i], faces[j], _MIN_OVERLAP_M)
 
 
-def _pairs(
-    faces: list[_Face], segments: Segments, distance_m: float
-) -> list[tuple[float, int, int]]:
+def _pairs(faces: list[_Face], distance_m: float) -> list[tuple[float, int, int]]:
     """Pairs of nearly parallel faces up to a distance, each after its distance, the least first."""
-    lines = np.array(shapely.linestrings(segments), dtype=np.object_)
-    along = np.array([face.along for face in faces]).reshape(-1, 2)
-    near = _near_in_direction(lines, along, distance_m)
-    a, b = along[near[:, 0]], along[near[:, 1]]
-    near = near[np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) <= _MAX_SINE]
-    apart = ((_apart(faces[i], faces[j]), i, j) for i, j in near.tolist())
-    return sorted(pair for pair in apart if pair[0] <= distance_m)
+    start, along = (_vectors(faces, name) for name in ("start", "along"))
+    length = np.array([face.length for face in faces])
+    ends = np.stack([start, start + along * length[:, None]], axis=1)
+    i, j = _near_in_direction(linestrings(ends), along, distance_m).T
+    sine = along[i, 0] * along[j, 1] - along[i, 1] * along[j, 0]
+    parallel = np.abs(sine) <= _MAX_SINE
+    i, j = i[parallel], j[parallel]
+    apart_m = _apart(ends[j] - start[i, None], along[i], length[i])
+    near = apart_m <= distance_m
+    return sorted(zip(apart_m[near].tolist(), i[near].tolist(), j[near].tolist(), strict=True))
+
+
+def _vectors(faces: Sequence[_Face], name: str) -> NDArray[np.float64]:
+    return np.array([getattr(face, name) for face in faces]).reshape(-1, 2)
+
+
+def _apart(
+    ends: Segments, along: NDArray[np.float64], length: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Distances (n,) of faces from others where they face each other; inf if they do not [m].
+
+    Parameters
+    ----------
+    ends : (n, 2, 2) float64
+        Of the other faces, from each face's start [m].
+    along : (n, 2) float64
+        Unit directions of the faces.
+    length : (n,) float64
+        Of the faces [m].
+    """
+    s = np.sum(ends * along[:, None], axis=2)
+    t = along[:, None, 0] * ends[..., 1] - along[:, None, 1] * ends[..., 0]
+    run = s[:, 1] - s[:, 0]
+    slope = np.divide(t[:, 1] - t[:, 0], run, out=np.zeros_like(run), where=run != 0)
+    low, high = np.maximum(s.min(axis=1), 0.0), np.minimum(s.max(axis=1), length)
+    sides = t[:, :1] + slope[:, None] * (np.stack([low, high], axis=1) - s[:, :1])
+    facing = (high - low >= _MIN_OVERLAP_M) & (sides[:, 0] * sides[:, 1] > 0)
+    return np.where(facing, np.abs(sides).mean(axis=1), np.inf)
 
 
 def _near_in_direction(
@@ -174,11 +214,10 @@ def _heavy_strips(faces: list[_Face], heavy_m: float) -> list[Strip]:
     Marks the faces as used where there are any.
     """
     whole = [k for k, face in enumerate(faces) if face.length > _JAMB_M]
-    segments = np.array([_ends_of(faces[k]) for k in whole]).reshape(-1, 2, 2)
     trial = [replace(faces[k], used=[*faces[k].used]) for k in whole]
     strips = [
         strip
-        for apart_m, i, j in _pairs(trial, segments, heavy_m)
+        for apart_m, i, j in _pairs(trial, heavy_m)
         for strip in _between(trial[i], trial[j], _least_length_m(apart_m))
     ]
     free = [high - low for face in trial for low, high in face.free(0.0, face.length)]
@@ -190,63 +229,40 @@ def _heavy_strips(faces: list[_Face], heavy_m: float) -> list[Strip]:
     return strips
 
 
-def _ends_of(face: _Face) -> list[NDArray[np.float64]]:
-    return [face.start, face.start + face.along * face.length]
-
-
 def _least_length_m(thickness_m: float) -> float:
     """Length from which on two faces are those of a wall: the more, the thicker it is [m]."""
     return (_LONG if thickness_m <= _JAMB_M else _VERY_LONG) * thickness_m
 
 
-def _facing(face: _Face, other: _Face) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Coordinates of the other face's ends along and across a face, in order along it."""
-    ends = np.array([other.start, other.start + other.along * other.length]) - face.start
-    s = ends @ face.along
-    t = face.along[0] * ends[:, 1] - face.along[1] * ends[:, 0]
-    order = np.argsort(s)
-    return s[order], t[order]
-
-
-def _apart(face: _Face, other: _Face) -> float:
-    """Distance of two faces where they face each other; inf if they do not [m]."""
-    s, t = _facing(face, other)
-    low, high = max(s[0], 0.0), min(s[1], face.length)
-    if high - low < _MIN_OVERLAP_M:
-        return np.inf
-    sides = np.interp([low, high], s, t)
-    return float(np.abs(sides).mean()) if sides[0] * sides[1] > 0 else np.inf
+def _facing(face: _Face, other: _Face) -> tuple[Point, Point]:
+    """Ends of another face, each along and to the left of a face, in order along it."""
+    (x, y), (ux, uy) = face.start, face.along
+    ends = ((px - x, py - y) for px, py in (other.start, other.at(other.length)))
+    first, last = sorted((dx * ux + dy * uy, ux * dy - uy * dx) for dx, dy in ends)
+    return first, last
 
 
 def _between(face: _Face, other: _Face, least_m: float) -> Iterator[Strip]:
     """Strips longer than the least where both faces are free; marks them as used."""
-    s, t = _facing(face, other)
-    low, high = max(s[0], 0.0), min(s[1], face.length)
-    for begin, end in list(face.free(low, high)):
-        back, _ = _facing(other, _part(face, begin, end))
-        for back_low, back_high in list(other.free(max(back[0], 0.0), min(back[1], other.length))):
-            ahead, _ = _facing(face, _part(other, back_low, back_high))
-            section = (max(float(ahead[0]), begin), min(float(ahead[1]), end))
+    first, last = _facing(face, other)
+    for begin, end in list(face.free(max(first[0], 0.0), min(last[0], face.length))):
+        (back_low, _), (back_high, _) = _facing(other, face.part(begin, end))
+        for low, high in list(other.free(max(back_low, 0.0), min(back_high, other.length))):
+            (ahead_low, _), (ahead_high, _) = _facing(face, other.part(low, high))
+            section = (max(ahead_low, begin), min(ahead_high, end))
             if section[1] - section[0] <= least_m:
                 continue
             face.used.append(section)
-            other.used.append((back_low, back_high))
-            yield _strip(face, section, np.interp(section, s, t))
+            other.used.append((low, high))
+            yield _strip(face, section, first, last)
 
 
-def _part(face: _Face, low: float, high: float) -> _Face:
-    return _Face(face.start + face.along * low, face.along, high - low)
-
-
-def _strip(face: _Face, section: Interval, sides: NDArray[np.float64]) -> Strip:
-    across = np.array([-face.along[1], face.along[0]])
-    ends = [
-        face.start + face.along * s + across * side / 2
-        for s, side in zip(section, sides, strict=True)
-    ]
-    (x0, y0), (x1, y1) = ends
-    start, end = (float(x0), float(y0)), (float(x1), float(y1))
-    return Strip(start, end, float(np.abs(sides).mean()))
+def _strip(face: _Face, section: Interval, first: Point, last: Point) -> Strip:
+    """Strip beside a section of a face, up to the line from `first` to `last` of its frame."""
+    slope = (last[1] - first[1]) / (last[0] - first[0])
+    begin, end = ((s, first[1] + slope * (s - first[0])) for s in section)
+    thickness_m = (abs(begin[1]) + abs(end[1])) / 2
+    return Strip(face.at(begin[0], begin[1] / 2), face.at(end[0], end[1] / 2), thickness_m)
 
 
 def _corners(strips: list[Strip], areas: Areas) -> Iterator[Polygon]:
@@ -282,15 +298,15 @@ def _singles(faces: list[_Face], strips: list[Strip]) -> Segments:
     thickness_m = np.array([strip.thickness_m for strip in strips])
     walls = shapely.buffer(_areas(strips, thickness_m + _CAP_M), _CAP_M, quad_segs=16)
     parts = [
-        (_part(face, low, high), face.length)
+        (face.part(low, high), face.length)
         for face in faces
         for low, high in face.free(0.0, face.length)
     ]
-    found: list[list[NDArray[np.float64]]] = []
+    found: list[list[Point]] = []
     for (part, whole_m), covered in zip(parts, _covered([p for p, _ in parts], walls), strict=True):
         for low, high in complement(covered, part.length):
             if high - low >= min(_MIN_SINGLE_M, whole_m - _CAP_M) and high - low > _CAP_M:
-                found.append([part.start + part.along * s for s in (low, high)])
+                found.append([part.at(low), part.at(high)])
     return np.array(found, dtype=np.float64).reshape(-1, 2, 2)
 
 
@@ -299,11 +315,9 @@ def _covered(faces: list[_Face], walls: Areas) -> list[list[Interval]]:
     sections: list[list[Interval]] = [[] for _ in faces]
     if not len(walls):
         return sections
-    start, along = (
-        np.array([getattr(f, x) for f in faces]).reshape(-1, 2) for x in ("start", "along")
-    )
+    start, along = (_vectors(faces, name) for name in ("start", "along"))
     ends = start + along * np.array([face.length for face in faces])[:, None]
-    lines = np.array(shapely.linestrings(np.stack([start, ends], axis=1)), dtype=np.object_)
+    lines = linestrings(np.stack([start, ends], axis=1))
     which, wall = shapely.STRtree(walls).query(lines, "intersects")
     common = np.array(shapely.intersection(lines[which], walls[wall]), dtype=np.object_)
     points, pair = shapely.get_coordinates(common, return_index=True)

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
-from shapely.geometry import LineString
+from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from floorplans.importers.centrelines.sections import linestrings
 from floorplans.importers.draft import RawWall
 
 _BESIDE_M = 0.1
@@ -34,30 +35,26 @@ def without_spurious_walls(walls: Sequence[RawWall], area: BaseGeometry) -> list
     """
     if not walls:
         return []
-    lines = [LineString([wall.start, wall.end]) for wall in walls]
-    thickness_m = [wall.thickness_m or 0.0 for wall in walls]
-    bodies = [
-        line.buffer(thick / 2 + _BESIDE_M, cap_style="flat")
-        for line, thick in zip(lines, thickness_m, strict=True)
-    ]
-    thin, thick = shapely.STRtree(bodies).query(np.array(lines), predicate="intersects")
-    spurious = {
-        i
-        for i, j in zip(thin.tolist(), thick.tolist(), strict=True)
-        if _RATIO * thickness_m[i] < thickness_m[j]
-        and lines[i].intersection(bodies[j]).length > _FRACTION * lines[i].length
-    }
-    return [
-        wall
-        for i, wall in enumerate(walls)
-        if i not in spurious
-        and (thickness_m[i] >= _THIN_M or _is_filled(lines[i], thickness_m[i], area))
-    ]
+    lines = linestrings(np.array([(wall.start, wall.end) for wall in walls]))
+    thickness_m = np.array([wall.thickness_m or 0.0 for wall in walls])
+    bodies = shapely.buffer(lines, thickness_m / 2 + _BESIDE_M, cap_style="flat")
+    i, j = shapely.STRtree(bodies).query(lines, predicate="intersects")
+    i, j = (k[_RATIO * thickness_m[i] < thickness_m[j]] for k in (i, j))
+    within_m = shapely.length(shapely.intersection(lines[i], bodies[j]))
+    kept = np.ones(len(walls), dtype=np.bool_)
+    kept[i[within_m > _FRACTION * shapely.length(lines[i])]] = False
+    thin = np.flatnonzero(kept & (thickness_m < _THIN_M))
+    kept[thin] = _are_filled(lines[thin], thickness_m[thin], area)
+    return [wall for wall, keep in zip(walls, kept.tolist(), strict=True) if keep]
 
 
-def _is_filled(line: LineString, thickness_m: float, area: BaseGeometry) -> bool:
-    """Whether the area along a wall is as wide as its thickness, and not much wider."""
-    body = line.buffer(thickness_m / 2, cap_style="flat")
-    wide = line.buffer(thickness_m, cap_style="flat")
-    solid = body.intersection(area).area / body.area
-    return bool(solid > _FRACTION and wide.intersection(area).area < _FRACTION * wide.area)
+def _are_filled(
+    lines: NDArray[np.object_], thickness_m: NDArray[np.float64], area: BaseGeometry
+) -> NDArray[np.bool_]:
+    """Whether the area along each wall (n,) is as wide as its thickness, and not much wider."""
+    bodies = shapely.buffer(lines, thickness_m / 2, cap_style="flat")
+    wide = shapely.buffer(lines, thickness_m, cap_style="flat")
+    here = shapely.intersection(area, wide)
+    solid = shapely.area(shapely.intersection(bodies, here)) / shapely.area(bodies)
+    around = shapely.area(here) / shapely.area(wide)
+    return np.array((solid > _FRACTION) & (around < _FRACTION))

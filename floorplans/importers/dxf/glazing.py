@@ -95,6 +95,8 @@ def glass_walls(lines: Sequence[LineString], area: BaseGeometry) -> list[RawWall
 
     Lines inside other walls or on their faces are ignored; a pane may cross walls.
     """
+    if not lines:
+        return []
     wide = area.buffer(_IN_WALL_M)
     parts = shapely.get_parts([_outside(line, wide) for line in lines])
     chains = [shapely.get_coordinates(part) for part in parts if part.length > MIN_SINGLE_M]

@@ -23,12 +23,13 @@ from shapely.geometry.base import BaseGeometry
 from floorplans.errors import PlanError
 from floorplans.importers.centrelines.align import aligned_to_main_directions, along_walls
 from floorplans.importers.centrelines.areas import MAX_HEAVY_M, walls_of_area
+from floorplans.importers.centrelines.axes import point_of
 from floorplans.importers.centrelines.double_doors import join_leaves
 from floorplans.importers.centrelines.gaps import fill_gaps
 from floorplans.importers.centrelines.parallel_lines import strips_of_lines
+from floorplans.importers.centrelines.sections import sections_inside
 from floorplans.importers.centrelines.split_by_material import by_material, without_openings
 from floorplans.importers.centrelines.spurious import without_spurious_walls
-from floorplans.importers.centrelines.tiles import Tiles
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
 from floorplans.importers.dxf.bodies import corners_of, thin_bodies, without_floors
 from floorplans.importers.dxf.curves import Curve, scaled_curve
@@ -51,6 +52,7 @@ from floorplans.importers.layer_names import unmatched
 from floorplans.importers.progress import Report, Step, no_report
 from floorplans.importers.tangle import check_crossings
 from floorplans.importers.units import UNITS, check_size, guess_unit, unit_length
+from floorplans.walls import complement
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -189,14 +191,14 @@ def _building(
     """Walls and openings of a drawing in metres."""
     bodies = _bodies(content, layers)
     report(Step.FACES_PAIRED)
-    area = shapely.union_all(list(bodies.area.values()))
+    area = _merged(list(bodies.area.values()))
     openings = _drawn_openings(content, layers, area, bodies.singles)
     openings = join_leaves(along_walls(openings, _faces(content, layers)))
     filled = list(fill_gaps(area, openings))
-    area = shapely.union_all([area, *filled])
+    area = _merged([area, *filled])
     loose, bent, glass = loose_openings(content, layers, area)
-    filled += fill_gaps(area, loose)
-    area = shapely.union_all([area, *filled])
+    more = fill_gaps(area, loose)
+    area, filled = _merged([area, *more]), [*filled, *more]
     openings = as_windows_outside([*openings, *loose, *bent], area)
     solid = without_openings(bodies.area, openings)
     walls = walls_of_area(area, CLOSE_M, shapely.union_all(filled)) if not area.is_empty else []
@@ -206,6 +208,11 @@ def _building(
         *_single_walls(bodies, area),
         *glass_walls(glass, area),
     ], openings
+
+
+def _merged(areas: Sequence[BaseGeometry]) -> BaseGeometry:
+    """Union of areas, each of which is one already."""
+    return areas[0] if len(areas) == 1 else shapely.union_all(areas)
 
 
 def _drawn_openings(
@@ -277,18 +284,14 @@ def _check_number(curves: Mapping[Material, Sequence[Curve]]) -> None:
 
 def _single_walls(bodies: _Bodies, area: BaseGeometry) -> Iterator[RawWall]:
     """Walls on unpaired lines, except beside a wall's face."""
-    wide = area.buffer(_AT_FACE_M)
-    tiles = Tiles(wide)
-    shapely.prepare(wide)
-    lines = np.array([line for line, _ in bodies.singles], dtype=np.object_)
-    near = shapely.intersects(wide, lines).tolist()
-    for (line, material), is_near in zip(bodies.singles, near, strict=True):
-        (x, y), reach_m = line.centroid.coords[0], line.length / 2 + MIN_SINGLE_M
-        free = line.difference(tiles.around(x, y, reach_m)) if is_near else line
-        for part in shapely.get_parts(free):
-            if part.length > min(MIN_SINGLE_M, line.length / 2):
-                (x0, y0), *_, (x1, y1) = part.coords
-                yield RawWall((x0, y0), (x1, y1), None, material)
+    ends = np.array([line.coords for line, _ in bodies.singles]).reshape(-1, 2, 2)
+    beside = sections_inside(ends, area.buffer(_AT_FACE_M)) if len(ends) else []
+    for line, (single, material), sections in zip(ends, bodies.singles, beside, strict=True):
+        along = (line[1] - line[0]) / single.length
+        for low, high in complement(sections, single.length):
+            if high - low > min(MIN_SINGLE_M, single.length / 2):
+                start, end = line[0] + np.outer((low, high), along)
+                yield RawWall(point_of(start), point_of(end), None, material)
 
 
 def _swing_openings(content: Content, layers: Layers, ground: BaseGeometry) -> list[RawOpening]:

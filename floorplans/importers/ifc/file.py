@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 import zlib
+from codecs import BOM_UTF8
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from shutil import copyfileobj
 from tempfile import TemporaryDirectory
 from typing import Any
 from zipfile import BadZipFile, ZipFile, is_zipfile
@@ -61,10 +63,23 @@ def open_model(path: Path) -> Model:
     if find_spec("ifcopenshell") is None:
         raise PlanError("IFC files need the library ifcopenshell", remedy="install_ifc")
     _check_bytes(path.stat().st_size)
-    if not is_zipfile(path):
-        return _parse(path)
     with TemporaryDirectory() as folder:
-        return _parse(_unzipped(path, Path(folder)))
+        return _parse(_without_mark(path, Path(folder)))
+
+
+def _without_mark(path: Path, folder: Path) -> Path:
+    """Model as plain text without a byte order mark, which the library refuses.
+
+    In the folder, where the file is not such text already.
+    """
+    text = _unzipped(path, folder) if is_zipfile(path) else path
+    with text.open("rb") as file:
+        if file.read(len(BOM_UTF8)) != BOM_UTF8:
+            return text
+        unmarked = folder / "unmarked.ifc"
+        with unmarked.open("wb") as copy:
+            copyfileobj(file, copy)
+    return unmarked
 
 
 def _parse(path: Path) -> Model:

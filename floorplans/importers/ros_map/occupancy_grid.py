@@ -174,7 +174,7 @@ def _read_metadata(path: Path) -> MapMetadata:
     try:
         if path.stat().st_size > MAX_YAML_BYTES:
             raise PlanError("the file is too long to be a map's YAML file", origin=str(path))
-        data: object = yaml.safe_load(path.read_text(encoding="utf-8"))
+        data: object = yaml.safe_load(path.read_text(encoding="utf-8-sig"))
     except (yaml.YAMLError, ValueError, RecursionError, OSError) as error:
         if isinstance(error, PlanError):
             raise

@@ -105,3 +105,10 @@ def test_window_over_whole_chords_of_a_curved_wall_comes_back(tmp_path) -> None:
     widths = [sum(o.width_m for w in p.walls for o in w.openings) for p in (plan, again)]
     assert widths[0] == pytest.approx(4.0)
     assert widths[1] == pytest.approx(4.0, abs=0.1)
+
+
+def test_no_layer_of_a_drawing_is_unknown_when_it_is_imported(tmp_path) -> None:
+    export(floorplans.load("flat"), tmp_path / "flat.dxf")
+    layers = import_plan(tmp_path / "flat.dxf").layers
+    assert {"SOURCE", "START", "AXIS"} <= {layer.name for layer in layers}
+    assert not [layer.name for layer in layers if layer.is_unknown]
