@@ -62,7 +62,17 @@ class PlanError(ValueError):
         place: Place | None = None,
         at: tuple[float, float] | None = None,
     ) -> PlanError:
-        """Return the same error with what a caller knows of where it is; its own origin stays."""
+        """Return the same error with what a caller knows of where it is.
+
+        Parameters
+        ----------
+        origin : str
+            File or plan; the error's own one stays.
+        place : tuple of str and int, optional
+            Keys and numbers that lead to the value, in place of the error's own.
+        at : (float, float), optional
+            Point of the plan [m], if the error has none.
+        """
         return PlanError(
             self.problem,
             self.place if place is None else place,

@@ -158,7 +158,19 @@ def from_data(data: Mapping[str, object], *, origin: str = "<data>") -> FloorPla
 
 
 def save(plan: FloorPlan, path: str | Path) -> None:
-    """Write a plan to a TOML file."""
+    """Write a plan to a TOML file, whole or not at all.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+    path : str or Path
+        A file that is there is replaced.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written.
+    """
     with atomic_write(path) as temporary:
         temporary.write_text(dumps(plan), encoding="utf-8", newline="\n")
 

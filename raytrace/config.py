@@ -35,6 +35,11 @@ class TraceConfig:
     max_paths
         Maximum number of paths of a whole map: `min_power_dbm` is raised in steps of 1 dB until it
         is met. No limit by default.
+
+    Raises
+    ------
+    ValueError
+        For a limit out of range, and for any number of transmissions without a least power.
     """
 
     max_reflections: int = 6

@@ -214,6 +214,11 @@ def trace_points(
         Where the transmitter is not inside the building.
     TraceStoppedError, MemoryLimitError
         As for `compute_radio_map`.
+
+    Raises
+    ------
+    ValueError
+        For points of another shape, and a fraction that is not from 0 to below 1.
     """
     points = np.array(points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():

@@ -94,7 +94,7 @@ class Scene:
         edition
             Of ITU-R P.2040, for materials given by name.
         edgeless
-            Indices of materials of clutter: edges between two faces of them do not diffract.
+            (k,) indices of materials of clutter: edges between two faces of them do not diffract.
         ground_margin_m
             How far the ground reaches beyond the rectangle around the footprint [m]; by default
             there is none, and no path leaves the building. It lies as high as the floor, and

@@ -55,7 +55,7 @@ class AgentDescription:
     parameters: Mapping[str, Any]
 
     def decision_process(self, world: GridWorld, learning: QLearning) -> DecisionProcess:
-        """Raise ValueError: a description cannot be trained."""
+        """Raise ValueError: a description cannot be trained; see `Agent.decision_process`."""
         raise ValueError(
             f"agent {self.name!r}: only its description was loaded; to get the agent itself, give "
             f"its class {self.class_path}: TrainingResult.load(path, agents=[...])"

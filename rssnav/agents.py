@@ -40,7 +40,15 @@ class Agent(Protocol):
         ...
 
     def decision_process(self, world: GridWorld, learning: QLearning) -> DecisionProcess:
-        """States, steps, rewards and terminal states that a world has for this agent."""
+        """States, steps, rewards and terminal states that a world has for this agent.
+
+        Parameters
+        ----------
+        world : GridWorld
+            Cells, steps and RSS.
+        learning : QLearning
+            Limits of an episode.
+        """
         ...
 
 
@@ -80,7 +88,9 @@ class RssAgent:
         return "rss"
 
     def decision_process(self, world: GridWorld, learning: QLearning) -> DecisionProcess:
-        """Steps, rewards and terminal states of a world for readings without fluctuation.
+        """Steps, rewards and terminal states of a world; see `Agent.decision_process`.
+
+        Readings are without fluctuation.
 
         Raises
         ------
@@ -111,6 +121,11 @@ class LocationAgent:
     ----------
     terminal_distance_m : float
         Distance below which the transmitter is found [m].
+
+    Raises
+    ------
+    ValueError
+        For a distance that is not positive and finite.
     """
 
     terminal_distance_m: float = GOAL_DISTANCE_M
@@ -125,7 +140,7 @@ class LocationAgent:
         return "location"
 
     def decision_process(self, world: GridWorld, learning: QLearning) -> DecisionProcess:
-        """Steps, rewards and terminal states of a world.
+        """Steps, rewards and terminal states of a world; see `Agent.decision_process`.
 
         Raises
         ------

@@ -50,6 +50,11 @@ class ToleranceStates:
     ----------
     threshold_db : float
         Th [dB], at least 0.001; Th = 0 is :class:`ExactStates`.
+
+    Raises
+    ------
+    ValueError
+        For a threshold below 0.001 dB, or an infinite one.
     """
 
     threshold_db: float
@@ -70,6 +75,11 @@ class IntervalStates:
     ----------
     edges_dbm : tuple of float
         Where one interval ends and the next begins, strictly ascending [dBm].
+
+    Raises
+    ------
+    ValueError
+        Where there is no edge, or they are not finite and strictly ascending.
     """
 
     edges_dbm: tuple[float, ...]
@@ -89,7 +99,20 @@ class IntervalStates:
 
     @classmethod
     def uniform(cls, low_dbm: float, high_dbm: float, width_db: float) -> IntervalStates:
-        """Intervals of equal width from ``low_dbm`` up to ``high_dbm`` or just above."""
+        """Intervals of equal width, from ``low_dbm`` up to ``high_dbm`` or just above.
+
+        Parameters
+        ----------
+        low_dbm, high_dbm : float
+            First edge, and what the last one reaches [dBm].
+        width_db : float
+            Of each interval [dB].
+
+        Raises
+        ------
+        ValueError
+            For a width that is not positive, ends that do not rise, and too many intervals.
+        """
         if not (width_db > 0.0 and low_dbm < high_dbm <= low_dbm + MAX_INTERVALS * width_db):
             raise ValueError(
                 f"intervals of {width_db!r} dB from {low_dbm!r} to {high_dbm!r} dBm: expected "
@@ -112,6 +135,11 @@ class Fluctuation:
         Standard deviation [dB]; with 0 the readings equal the map's values.
     correlation : float
         Correlation of successive readings' fluctuations, in [0, 1).
+
+    Raises
+    ------
+    ValueError
+        For a number out of range.
     """
 
     sigma_db: float = 0.0

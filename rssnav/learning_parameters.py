@@ -55,6 +55,11 @@ class QLearning:
         Learning rule: Algorithm 1, or one of two rules it is compared with, SARSA and Double
         Q-learning. Those need a row of Q per state of the decision process, so not an RSS agent
         whose cells share discrete states or whose readings fluctuate.
+
+    Raises
+    ------
+    ValueError
+        For a parameter out of range; the message names it.
     """
 
     gamma: float = 0.98

@@ -124,6 +124,11 @@ def value_iteration(
         Discount factor, below 1.
     tolerance : float
         Sweeps stop when no value is farther than this from its optimum.
+
+    Raises
+    ------
+    ValueError
+        For a discount factor that is not from 0 to below 1.
     """
     expected = "a number in [0, 1), for value iteration to converge"
     require(0.0 <= gamma < 1.0, "gamma", gamma, expected)

@@ -139,7 +139,21 @@ class TrainingResult:
     def check_same_training(
         self, world: GridWorld, agent: Agent, learning: QLearning, schedule: Schedule
     ) -> None:
-        """Raise ValueError unless this result comes from the same training."""
+        """Check that this result comes from the same training.
+
+        Parameters
+        ----------
+        world : GridWorld
+        agent : Agent
+        learning : QLearning
+        schedule : Schedule
+            What another training has.
+
+        Raises
+        ------
+        ValueError
+            With what is different.
+        """
         for name, mine, other in (
             ("plan", self.world.plan_sha256, world.plan_sha256),
             ("speed", self.world.speed, world.speed),

@@ -80,7 +80,8 @@ class PlanScene:
     def fits(self, plan: FloorPlan, edition: str | None = None) -> bool:
         """Return whether a plan has the same building: all but what is placed in it.
 
-        Name, source, start, transmitters, origin and frame may differ.
+        Name, source, start, transmitters, origin and frame may differ. For the edition see
+        `scene_of`.
         """
         return edition_of(plan, edition) == self.scene.material_edition and all(
             getattr(plan, field.name) == getattr(self.plan, field.name)

@@ -109,7 +109,7 @@ def export(
 
 
 def render(plan: FloorPlan, path: Path, format: str | None, options: ExportOptions) -> Files:
-    """Render a plan as `export` does, without writing it."""
+    """Return the files that `export` would write, without writing them; see `export`."""
     return format_of(path, format).renderer()(plan, path, options)
 
 

@@ -200,7 +200,22 @@ def _a(title: str) -> str:
 
 
 def read_draft(path: Path, options: ImportOptions, report: Report = no_report) -> Draft | FloorPlan:
-    """Read a file with the reader of its format."""
+    """Read a file with the reader of its format.
+
+    Parameters
+    ----------
+    path : Path
+        Its suffix tells the format.
+    options : ImportOptions
+    report : callable
+        Called with each step that is done.
+
+    Raises
+    ------
+    PlanError
+        When the file cannot be read, is empty or of another format than its suffix tells, or holds
+        no building.
+    """
     kind = _format_of(path)
     if path.is_dir():
         return kind.reader()(path, options, report)

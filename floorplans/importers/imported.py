@@ -129,7 +129,16 @@ class Imported(ImportRecord):
 
     @classmethod
     def from_plan(cls, plan: FloorPlan, options: ImportOptions, source_file: str) -> Imported:
-        """Wrap a complete plan; only what the options specify is replaced."""
+        """Wrap a complete plan.
+
+        Parameters
+        ----------
+        plan : FloorPlan
+        options : ImportOptions
+            What they specify replaces what the plan has.
+        source_file : str
+            Name of the file it was read from.
+        """
         given = {
             key: getattr(options, key)
             for key in ("name", "floor_material", "ceiling_material", "source", "start")
@@ -170,7 +179,7 @@ class UnusablePlanError(PlanError):
     def located(
         self, origin: str = "", *, place: Place | None = None, at: Point | None = None
     ) -> UnusablePlanError:
-        """Return the same error with the file it is about."""
+        """Return the same error with the file it is about; see `PlanError.located`."""
         return UnusablePlanError(self.draft, self.problem, self.origin or origin)
 
     def with_draft(self, draft: DraftPlan) -> UnusablePlanError:

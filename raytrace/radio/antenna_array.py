@@ -38,6 +38,11 @@ class AntennaArray:
         (x, y, z) of each element from the array's position [wavelengths]; 1 to 4096 elements.
     weights
         One for each element; by default all equal, with squares that sum to 1.
+
+    Raises
+    ------
+    ValueError
+        Where offsets and weights are not of the same number, or too large.
     """
 
     element: Antenna = field(default_factory=Isotropic)

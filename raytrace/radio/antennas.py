@@ -67,6 +67,11 @@ class HalfWaveDipole:
     axis
         (x, y, z) along the wire, of any length; vertical by default. The opposite axis is the
         same antenna with the opposite phase.
+
+    Raises
+    ------
+    ValueError
+        For a gain that is NaN or too large.
     """
 
     peak_gain_db: float = 0.0
@@ -116,6 +121,11 @@ class Isotropic:
     polarisation
         Along tau ("vertical") or psi ("horizontal"), or unknown: then powers are means over all
         polarisations ("mean"; docs/theory.md, eq. 48).
+
+    Raises
+    ------
+    ValueError
+        For a gain that is NaN or too large, and another polarisation.
     """
 
     gain_db: float = 0.0

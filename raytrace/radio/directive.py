@@ -34,6 +34,11 @@ class Monopole:
     ----------
     peak_gain_db
         Gain at the horizon [dB]; by default that of a lossless one, 5.16 dBi.
+
+    Raises
+    ------
+    ValueError
+        For a gain that is NaN or too large.
     """
 
     peak_gain_db: float = DIPOLE_PEAK_GAIN_DBI + GROUND_PLANE_GAIN_DB
@@ -65,6 +70,11 @@ class Patch:
     permittivity
         Of the substrate, relative, at least 1. It sets length and width, and so the gain:
         9.3 dBi on air, 7.1 dBi at 2.2, 6.0 dBi at 4.4.
+
+    Raises
+    ------
+    ValueError
+        For a permittivity below 1, or one that is not finite.
     """
 
     permittivity: float = 2.2
@@ -131,6 +141,11 @@ class Sector:
     slant_deg
         Angle of the polarisation to the vertical, positive towards azimuth (polarisation model 2,
         eqs. 7.3-4 and 7.3-5) [deg].
+
+    Raises
+    ------
+    ValueError
+        For a number out of range.
     """
 
     peak_gain_db: float = 8.0

@@ -46,7 +46,17 @@ class Dielectric:
     def of_law(
         cls, name: str, a: float, b: float = 0.0, c: float = 0.0, d: float = 0.0
     ) -> "Dielectric":
-        """Make a material that follows one law at all frequencies."""
+        """Make a material that follows one law at all frequencies f [GHz].
+
+        Parameters
+        ----------
+        name
+            Its name.
+        a, b
+            Relative permittivity a f^b.
+        c, d
+            Conductivity c f^d [S/m].
+        """
         return cls(name, (Row(0.0, inf, a, b, c, d),))
 
     @classmethod
@@ -129,7 +139,27 @@ class Dielectric:
     def coefficients(
         self, thickness_m: float, frequency_hz: float, cos_incidence: Floats
     ) -> SlabCoefficients:
-        """Reflection and transmission of a slab of it in air."""
+        """Reflection and transmission of a slab of it in air.
+
+        Parameters
+        ----------
+        thickness_m
+            Of the slab [m].
+        frequency_hz
+            Frequency [Hz].
+        cos_incidence
+            Cosine of the angle between wave and normal; any shape.
+
+        Returns
+        -------
+        SlabCoefficients
+            Arrays of the shape of the angles.
+
+        Raises
+        ------
+        SceneError
+            For a frequency at which the material is not known.
+        """
         permittivity = self.complex_permittivity(frequency_hz)
         return slab_coefficients(permittivity, thickness_m, frequency_hz, cos_incidence)
 
@@ -175,7 +205,8 @@ class Layered:
         """Reflection and transmission in air; the thickness is that of the layers.
 
         Transmission is the same from both sides, by reciprocity. Reflection from both sides has
-        their mean power and the phase of their mean field.
+        their mean power and the phase of their mean field. For the parameters see
+        `Dielectric.coefficients`.
         """
         stack = [(m.complex_permittivity(frequency_hz), d) for m, d in self.layers]
         front = stack_coefficients(stack, frequency_hz, cos_incidence)
@@ -253,7 +284,14 @@ MATERIAL_NAMES: tuple[str, ...] = tuple(dict.fromkeys((*MATERIALS, *ANY_EDITION)
 
 
 def find_material(name: str, edition: str = DEFAULT_EDITION) -> Material:
-    """Return the built-in material of that name.
+    """Return the built-in material of a name.
+
+    Parameters
+    ----------
+    name
+        One of `MATERIAL_NAMES`.
+    edition
+        Of ITU-R P.2040.
 
     Raises
     ------
@@ -280,7 +318,16 @@ class Slab(NamedTuple):
     def of(
         cls, material: Material | str, thickness_m: float, edition: str = DEFAULT_EDITION
     ) -> "Slab":
-        """Make a slab; a name means the built-in material.
+        """Make a slab.
+
+        Parameters
+        ----------
+        material
+            A name means the built-in material.
+        thickness_m
+            From 0 to 10 [m]; of layers their sum.
+        edition
+            Of ITU-R P.2040, for a material given by name.
 
         Raises
         ------

@@ -42,6 +42,12 @@ class PatternTable:
         (n_theta, n_phi) complex amplitudes along theta-hat and phi-hat, for e^(+j omega t).
     name
         For `describe`.
+
+    Raises
+    ------
+    AntennaError
+        Where the angles do not cover the sphere, or the amplitudes are of another
+        shape or too large.
     """
 
     theta_deg: Floats
@@ -95,7 +101,20 @@ class PatternTable:
 
     @classmethod
     def of(cls, antenna: Antenna, step_deg: float = 1.0) -> "PatternTable":
-        """Tabulate any antenna; a step [deg] of 0.1 or more that divides 180 deg."""
+        """Tabulate any antenna.
+
+        Parameters
+        ----------
+        antenna
+            Of known polarisation.
+        step_deg
+            Between directions [deg], 0.1 to 90; a divisor of 180.
+
+        Raises
+        ------
+        AntennaError
+            For a step out of range.
+        """
         if not LEAST_STEP_DEG <= step_deg <= 90.0:
             raise AntennaError(f"step_deg = {step_deg}: expected {LEAST_STEP_DEG:g} to 90 deg")
         theta = np.linspace(0.0, 180.0, round(180.0 / step_deg) + 1)

@@ -25,6 +25,11 @@ class Rotated:
         The antenna.
     x_axis, z_axis
         Its axes in the building, orthogonal unit vectors.
+
+    Raises
+    ------
+    ValueError
+        For axes that are not orthogonal unit vectors.
     """
 
     antenna: Antenna

@@ -20,6 +20,11 @@ class Transmitter:
         Carrier frequency [Hz].
     antenna
         Its pattern, peak gain included.
+
+    Raises
+    ------
+    ValueError
+        For a number that is not finite, or a frequency that is not positive.
     """
 
     position: tuple[float, float, float]

@@ -156,7 +156,7 @@ class Paths:
         receiver_velocity
             (3,) or one for each path (n, 3) [m/s].
         transmitter_velocity
-            The same of the transmitter.
+            The same of the transmitter, (3,) or (n, 3) [m/s].
         """
         towards_m_s = (self.arrival_direction * np.asarray(receiver_velocity)).sum(axis=-1)
         towards_m_s += (self.departure_direction * np.asarray(transmitter_velocity)).sum(axis=-1)
@@ -188,11 +188,12 @@ class Paths:
         Returns
         -------
         dict
-            Columns ``receiver``, ``sequence`` (as `sequence` writes it), ``n_reflections``,
-            ``n_diffractions``, ``n_transmissions``, ``length_m``, ``delay_s``, ``weight``,
-            ``gain_real``, ``gain_imag``, ``gain_db``, ``surfaces`` and ``incidence_deg`` (slabs and
-            angles of incidence [deg] of the reflections and transmissions in their order, separated
-            by blanks, "-" for a diffraction), and the azimuth and zenith angles [rad]
+            Columns, each (n,): ``receiver``, ``sequence`` (as `sequence` writes it),
+            ``n_reflections``, ``n_diffractions``, ``n_transmissions``, ``length_m``, ``delay_s``,
+            ``weight``, ``gain_real``, ``gain_imag``, ``gain_db``, ``surfaces`` and
+            ``incidence_deg`` (slabs and angles of incidence [deg] of the reflections and
+            transmissions in their order, separated by blanks, "-" for a diffraction), and the
+            azimuth and zenith angles [rad]
             ``departure_azimuth``, ``departure_zenith``, ``arrival_azimuth``, ``arrival_zenith``.
         """
         departure, arrival = self.departure, self.arrival
@@ -326,7 +327,7 @@ class Paths:
         return self.rows(np.flatnonzero(np.arange(len(self)) - first < count))
 
     def rows(self, rows: Ints) -> Paths:
-        """Return the paths of the given row numbers, in that order."""
+        """Return the paths of the given row numbers (k,), in that order."""
         return Paths(
             self.receiver[rows],
             self.interactions[rows],

@@ -97,7 +97,7 @@ class RadioMap:
         )
 
     def with_plan(self, text: str, sha256: str) -> RadioMap:
-        """Return the same map with its plan stored in it."""
+        """Return the same map that stores its plan: TOML text, and sha256 in hexadecimal."""
         return replace(self, plan_text=text, plan_sha256=sha256)
 
     def covering(self, cells: NDArray[np.bool_]) -> RadioMap:

@@ -36,6 +36,11 @@ class TransmitterMaps(Mapping[str, RadioMap]):
     ----------
     maps
         At least one, with the same grid, limits, layers, receive antenna and plan.
+
+    Raises
+    ------
+    ValueError
+        For no map, and for maps that were not traced together.
     """
 
     maps: dict[str, RadioMap]

@@ -30,6 +30,11 @@ class NavigationEnv(gymnasium.Env[Any, Any]):
     render_mode : {"rgb_array", "ansi"}, optional
         What :meth:`render` returns: a picture of the map, walls, trail, UAV and source in which
         cells that were not visited are dimmed, or the same as text.
+
+    Raises
+    ------
+    ValueError
+        For another render mode.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 8}
@@ -52,7 +57,20 @@ class NavigationEnv(gymnasium.Env[Any, Any]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begin an episode."""
+        """Begin an episode.
+
+        Parameters
+        ----------
+        seed : int, optional
+            Of all random numbers from now on.
+        options : dict, optional
+            Ignored.
+
+        Returns
+        -------
+        observation, info
+            What the UAV sees, and ``action_mask`` (n_actions,) bool among others.
+        """
         super().reset(seed=seed)
         state = self._state
         if seed is not None or not state.seeded:
@@ -64,7 +82,23 @@ class NavigationEnv(gymnasium.Env[Any, Any]):
         return self._observed(), self._info()
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Fly an action."""
+        """Fly an action.
+
+        Parameters
+        ----------
+        action : int
+            0 to 7, counter-clockwise from +x; further ones as the options allow.
+
+        Returns
+        -------
+        observation, reward, terminated, truncated, info
+            As in Gymnasium; terminated when the source is found.
+
+        Raises
+        ------
+        ValueError
+            For another action, and before `reset`.
+        """
         if self._lists is not None:
             result = self._lists.step(int(action))
             self.trail.append(self._lists.cell)
@@ -95,7 +129,7 @@ class NavigationEnv(gymnasium.Env[Any, Any]):
         )
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Possible actions; the name that MaskablePPO of sb3-contrib looks for."""
+        """Possible actions (n_actions,); the name that MaskablePPO of sb3-contrib looks for."""
         if self._lists is not None:
             return self._lists.mask().astype(np.bool_)
         return self._state.masks[0].astype(np.bool_)

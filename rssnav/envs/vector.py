@@ -32,6 +32,11 @@ class NavigationVectorEnv(vector.VectorEnv[Any, Any, Any]):
     autoreset_mode : {"NextStep", "SameStep"} or gymnasium.vector.AutoresetMode
         When the next episode begins; with the latter the last observation of the ended one is
         ``info["final_obs"]``.
+
+    Raises
+    ------
+    ValueError
+        For no environment, or another autoreset mode.
     """
 
     def __init__(
@@ -63,6 +68,11 @@ class NavigationVectorEnv(vector.VectorEnv[Any, Any, Any]):
             Of each environment, or of the first: the others have the numbers that follow.
         options : dict, optional
             ``reset_mask`` (N,) bool.
+
+        Raises
+        ------
+        ValueError
+            For another number of seeds than environments.
         """
         chosen = self._all if options is None else options.get("reset_mask", self._all)
         seeds: list[int | None] = (
@@ -82,7 +92,23 @@ class NavigationVectorEnv(vector.VectorEnv[Any, Any, Any]):
     def step(
         self, actions: Any
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Step every environment; an impossible action leaves its UAV where it is."""
+        """Step every environment; an impossible action leaves its UAV where it is.
+
+        Parameters
+        ----------
+        actions : (N,) int
+            One for each environment.
+
+        Returns
+        -------
+        observations, rewards, terminated, truncated, info
+            As in Gymnasium; the three in the middle have shape (N,).
+
+        Raises
+        ------
+        ValueError
+            For actions of another shape or number.
+        """
         state = self._state
         chosen = np.ascontiguousarray(actions, dtype=np.int64)
         if chosen.shape != (self.num_envs,):

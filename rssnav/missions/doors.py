@@ -115,6 +115,11 @@ def mission_of_doors(
         At both ends.
     path : Path, optional
         File that the maps are kept in; the number of the doors' state is added to its name.
+
+    Raises
+    ------
+    ValueError
+        For more than `MOST_DOORS` doors.
     """
     require(len(doors) <= MOST_DOORS, "doors", len(doors), f"at most {MOST_DOORS}")
     states = [_subset(doors, state) for state in range(2 ** len(doors))]

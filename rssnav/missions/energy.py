@@ -67,6 +67,11 @@ class MultirotorEnergy:
         from the 3 kg of that craft.
     efficiency : float
         Of the drive, for "braking".
+
+    Raises
+    ------
+    ValueError
+        For a number that is not positive, or another way to turn.
     """
 
     mass_kg: float = 0.6
@@ -91,7 +96,7 @@ class MultirotorEnergy:
         require(self.turns in kinds, "turns", self.turns, " or ".join(map(repr, kinds)))
 
     def power_w(self, speed_m_s: NDArray[np.float64] | float) -> NDArray[np.float64]:
-        """Power in straight flight at constant speed [W]."""
+        """Power [W] in straight flight at constant speeds [m/s], of any shape."""
         v2 = np.square(np.asarray(speed_m_s, dtype=np.float64))
         weight_n = self.mass_kg * _GRAVITY
         disc = self.air_density * self.disc_area_m2
@@ -111,7 +116,7 @@ class MultirotorEnergy:
         return float(self.power_w(0.0))
 
     def turn_j(self, angle_deg: NDArray[np.float64], speed_m_s: float) -> NDArray[np.float64]:
-        """Energy of a turn at a speed [J]."""
+        """Energy [J] of turns by ``angle_deg`` [degrees], of any shape, at ``speed_m_s`` [m/s]."""
         if self.turns == "angle":
             return self.turn_j_per_deg * angle_deg
         if self.turns == "braking":

@@ -161,6 +161,11 @@ def fly(
         Same seed, same flights. The world's random numbers do not depend on the policy's.
     progress : callable, optional
         Called as ``progress(done, episodes)``.
+
+    Raises
+    ------
+    ValueError
+        For less than one episode.
     """
     require(episodes >= 1, "episodes", episodes, "at least 1")
     flyer, goal = Flyer(mission, task, observation), task.goal.cells(mission)

@@ -118,11 +118,11 @@ class Layout:
         return mask
 
     def nearest(self, x_m: float, y_m: float) -> int:
-        """Cell whose centre is nearest to a point [m]."""
+        """Cell whose centre is nearest to the point (x_m, y_m) [m]."""
         return int(np.argmin(np.hypot(*(self.position - (x_m, y_m)).T)))
 
     def reachable(self, start: int) -> NDArray[np.int64]:
-        """Cells that can be reached from a start, breadth first."""
+        """Cells (k,) that can be reached from a start, breadth first."""
         state, action = np.nonzero(self.action_mask)
         size = self.n_states
         moves = coo_array(
@@ -131,7 +131,7 @@ class Layout:
         return breadth_first_order(moves, start, return_predecessors=False).astype(np.int64)
 
     def part(self, states: NDArray[np.int64]) -> Layout:
-        """Layout of some cells alone, numbered in their order."""
+        """Layout of some cells (k,) alone, numbered in their order."""
         return Layout(
             next_state=_renumbered(self.next_state.astype(np.int64), states),
             position=self.position[states],

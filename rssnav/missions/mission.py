@@ -46,6 +46,11 @@ class Mission:
         Transmitter (x, y) in each mode [m].
     name : str
         Short name, for messages and tables.
+
+    Raises
+    ------
+    WorldError
+        For arrays whose shapes do not fit together, or starts that are no cells.
     """
 
     layouts: tuple[Layout, ...]
@@ -102,7 +107,7 @@ class Mission:
         return replace(self, modes=modes)
 
     def from_starts(self, starts: NDArray[np.integer]) -> Mission:
-        """Return the same mission with episodes that begin in any of some cells."""
+        """Return the same mission with episodes that begin in any of some cells (k,)."""
         cells = np.asarray(starts, dtype=np.int32).reshape(-1)
         return replace(
             self, starts=cells, start_probability=np.full(cells.size, 1.0 / max(cells.size, 1))

@@ -49,6 +49,11 @@ def learn_by_model(
     observation : Observation
         What it sees: cell and mode. Where readings do not fluctuate and differ from place to place,
         they tell the mode.
+
+    Raises
+    ------
+    ValueError
+        For less than one step.
     """
     require(steps >= 1, "steps", steps, "at least 1")
     goal, found_steps, changes = _explore(mission, task, steps, seed)

@@ -54,7 +54,20 @@ class ModeProcess:
 
     @classmethod
     def jumping(cls, n_modes: int, probability: float) -> ModeProcess:
-        """Modes of equal probability, drawn anew every second with a probability."""
+        """Modes of equal probability, drawn anew every second with a probability.
+
+        Parameters
+        ----------
+        n_modes : int
+            Number of modes.
+        probability : float
+            That a mode is drawn, per second.
+
+        Raises
+        ------
+        ValueError
+            For a number out of range.
+        """
         require(1 <= n_modes <= MOST_MODES, "n_modes", n_modes, f"1 to {MOST_MODES}")
         within = 0.0 <= probability <= 1.0
         require(within, "probability", probability, "a number in [0, 1]")
@@ -73,6 +86,11 @@ class ModeProcess:
             Probability that a switch is closed when an episode begins.
         toggles : float
             Probability that a switch changes, per second.
+
+        Raises
+        ------
+        ValueError
+            For a number out of range.
         """
         require(0 <= n_switches <= 10, "n_switches", n_switches, "0 to 10")
         for name, value in (("closed", closed), ("toggles", toggles)):

@@ -32,6 +32,11 @@ class Observation:
         How readings differ from the map.
     sensitivity_dbm : float
         Readings that are not above it are "no signal", and equal it [dBm].
+
+    Raises
+    ------
+    ValueError
+        For exact states of readings that fluctuate, and a reading beside the mode.
     """
 
     reading: StateRule | None = field(default_factory=ExactStates)

@@ -53,6 +53,11 @@ def spread_places(
         Number of places.
     speed : int
         The places can be reached at this speed.
+
+    Raises
+    ------
+    ValueError
+        For n below 1, and where the plan has no room for so many places.
     """
     require(n >= 1, "n", n, "at least 1")
     layout = reachable_layout(plan, speed)

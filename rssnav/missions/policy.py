@@ -84,7 +84,7 @@ class GreedyTable:
         self._generator = generator
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
-        """Return the best possible action."""
+        """Return the best possible action; see `rssnav.missions.Policy.act`."""
         if self.epsilon > 0.0 and self._generator.random() < self.epsilon:
             return int(self._generator.choice(np.flatnonzero(mask)))
         return int(np.argmax(np.where(mask, self.q[observation.row], -np.inf)))
@@ -101,5 +101,5 @@ class RandomPolicy:
         self._generator = generator
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
-        """Draw an action."""
+        """Draw an action; see `rssnav.missions.Policy.act`."""
         return int(self._generator.choice(np.flatnonzero(mask)))

@@ -54,6 +54,11 @@ class ReadingAbove:
         latest. Its alternative is an RSS higher than the level by the standard deviation of the
         fluctuation, which it misses with a probability of about 0.05 after a first reading above
         the level. The bound holds for any number of readings, also if they are correlated.
+
+    Raises
+    ------
+    ValueError
+        For a number out of range.
     """
 
     level_dbm: float = -21.0
@@ -91,6 +96,11 @@ class Within:
         Horizontal distance [m].
     in_sight_dbm : float
         RSS that the cell must have besides, so that a wall between them can be excluded [dBm].
+
+    Raises
+    ------
+    ValueError
+        For a distance that is not positive and finite.
     """
 
     distance_m: float = GOAL_DISTANCE_M
@@ -136,6 +146,11 @@ class Task:
         Energy after which an episode is truncated [kJ].
     max_steps : int
         Seconds after which it is truncated.
+
+    Raises
+    ------
+    ValueError
+        For a parameter out of range, and for a cost of energy without a model of energy.
     """
 
     goal: ReadingAbove | Within = field(default_factory=ReadingAbove)

@@ -55,6 +55,11 @@ class DistanceSearch:
         little probability do not come first.
     sensitivity_dbm : float
         Of the receiver [dBm].
+
+    Raises
+    ------
+    ValueError
+        For a number out of range, or another kind of targets.
     """
 
     layout: Layout
@@ -103,7 +108,7 @@ class DistanceSearch:
         self._target, self._since = -1, 0
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
-        """Weigh by the reading, and fly on to the target."""
+        """Weigh by the reading, and fly on to the target; see `rssnav.missions.Policy.act`."""
         fresh = not self._steps.visited[self._steps.grid_cell[observation.cell]]
         here = self._steps.see(observation.cell, mask)
         if fresh:  # errors of the law do not change from visit to visit

@@ -26,6 +26,11 @@ class FrontierSearch:
         Building, of which only size, speed and the UAV's own cells are used.
     steps_per_db : float
         Steps of detour that a reading higher by 1 dB is worth; 0 explores the nearest.
+
+    Raises
+    ------
+    ValueError
+        For a number out of range.
     """
 
     layout: Layout
@@ -46,7 +51,7 @@ class FrontierSearch:
         self._beside_dbm[:] = -np.inf
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
-        """Fly a step of the way to the best frontier cell."""
+        """Fly a step of the way to the best frontier cell; see `rssnav.missions.Policy.act`."""
         steps = self._steps
         here = steps.see(observation.cell, mask)
         beside = steps.beside(here)

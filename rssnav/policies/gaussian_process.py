@@ -36,6 +36,11 @@ class GaussianProcessSearch:
         What a step of the way costs [dB].
     steps_to_choose : int
         Steps towards a cell until another is chosen.
+
+    Raises
+    ------
+    ValueError
+        For a number out of range.
     """
 
     layout: Layout
@@ -80,7 +85,7 @@ class GaussianProcessSearch:
         self._target, self._since = -1, 0
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
-        """Take the reading, and fly a step to the best cell."""
+        """Take the reading, and fly a step to the best cell; see `rssnav.missions.Policy.act`."""
         steps = self._steps
         fresh = not steps.visited[steps.grid_cell[observation.cell]]
         here = steps.see(observation.cell, mask)
@@ -121,7 +126,7 @@ class GaussianProcessSearch:
         )
 
     def predict(self, cells: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Mean and standard deviation of the RSS in grid cells [dBm]."""
+        """Mean and standard deviation of the RSS in grid cells [dBm], both (k,)."""
         known = self._whitened[: self._count]
         mean = self._sum_dbm / self._count
         predicted = mean + (known[:, -2] - mean * known[:, -1]) @ known[:, :-2]

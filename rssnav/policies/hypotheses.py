@@ -45,6 +45,11 @@ class Hypotheses:
         Steps under each hypothesis, where doors differ; empty where they are those of ``layout``.
     hops : (S, H) int32
         Fewest steps from each cell to where it would be found.
+
+    Raises
+    ------
+    ValueError
+        For arrays whose shapes do not fit together, or another number of layouts.
     """
 
     layout: Layout
@@ -68,7 +73,14 @@ class Hypotheses:
 
     @classmethod
     def of_mission(cls, mission: Mission, task: Task) -> Hypotheses:
-        """Return the modes of a mission: true places, states of doors and maps, and their chain."""
+        """Return the modes of a mission: true places, states of doors and maps, and their chain.
+
+        Parameters
+        ----------
+        mission : Mission
+        task : Task
+            Its goal tells where the transmitter is found.
+        """
         several = len(mission.layouts) > 1
         return cls(
             layout=mission.layout,

@@ -37,6 +37,11 @@ class Likelihood:
         Part of an independent reading that a reading counts: errors are alike in near cells.
     sensitivity_dbm : float
         Of the receiver [dBm].
+
+    Raises
+    ------
+    ValueError
+        For a deviation that is not positive, or a temper that is not in (0, 1].
     """
 
     sigma_db: float = 4.0
@@ -48,7 +53,20 @@ class Likelihood:
         require(0.0 < self.temper <= 1.0, "temper", self.temper, "a number in (0, 1]")
 
     def log(self, reading_dbm: float, expected_dbm: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Logarithm of the likelihood of a reading, up to a constant, after tempering."""
+        """Logarithm of the likelihood of a reading, up to a constant, after tempering.
+
+        Parameters
+        ----------
+        reading_dbm : float
+            The reading [dBm].
+        expected_dbm : NDArray
+            RSS under each hypothesis [dBm], of any shape.
+
+        Returns
+        -------
+        NDArray
+            Of the same shape.
+        """
         misfit = (reading_dbm - expected_dbm) / self.sigma_db
         censored = reading_dbm <= self.sensitivity_dbm
         return self.temper * (log_ndtr(misfit) if censored else -0.5 * misfit**2)
@@ -135,6 +153,11 @@ class MapSearch(_MapPolicy):
         doi:10.1093/biomet/25.3-4.285), or has the highest probability per step of the way.
     steps_to_draw : int
         Steps towards it until another is chosen.
+
+    Raises
+    ------
+    ValueError
+        For a number out of range, or another kind of targets.
     """
 
     targets: Literal["thompson", "greedy"] = "greedy"
@@ -159,7 +182,7 @@ class MapSearch(_MapPolicy):
         self._target, self._since = -1, 0
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
-        """Weigh by the reading, and fly a step to the target."""
+        """Weigh by the reading, and fly a step to the target; see `rssnav.missions.Policy.act`."""
         self._weigh(observation)
         here = self._steps.see(observation.cell, mask)
         if self._target in (-1, here) or self._since >= self.steps_to_draw:
@@ -204,7 +227,7 @@ class Qmdp(_MapPolicy):
     name: str = "QMDP"
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
-        """Weigh by the reading, and fly the best step."""
+        """Weigh by the reading, and fly the best step; see `rssnav.missions.Policy.act`."""
         self._weigh(observation)
         there = self.hypotheses.layout.next_state[observation.cell, mask]
         left = self.hypotheses.hops[there].astype(np.float64)
@@ -229,6 +252,11 @@ class Infotaxis(_MapPolicy):
         Whether the distance counts.
     resolution_db : float
         Spacing of the readings over which the expectation is taken [dB].
+
+    Raises
+    ------
+    ValueError
+        For a number out of range.
     """
 
     space_aware: bool = True
@@ -244,7 +272,7 @@ class Infotaxis(_MapPolicy):
         return "space-aware infotaxis" if self.space_aware else "infotaxis"
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
-        """Weigh by the reading, and fly the step of the least expected cost."""
+        """Fly the step of the least expected cost; see `rssnav.missions.Policy.act`."""
         self._weigh(observation)
         there = self.hypotheses.layout.next_state[observation.cell, mask]
         belief = self.belief.probability

@@ -61,6 +61,11 @@ class MapParticleFilter(MapSearch):
         Number of particles.
     fresh_fraction : float
         Part of new particles at each resampling.
+
+    Raises
+    ------
+    ValueError
+        For a number out of range.
     """
 
     targets: Literal["thompson", "greedy"] = "thompson"

@@ -59,7 +59,7 @@ class StepMemory:
         self.possible[:], self.visited[:] = self._assumed, False
 
     def see(self, cell: int, mask: NDArray[np.bool_]) -> int:
-        """Note the possible actions in a cell of the layout; return its grid cell."""
+        """Note the possible actions ``mask`` (8,) in a cell of the layout; return its grid cell."""
         here = int(self.grid_cell[cell])
         self.visited[here] = True
         if not self._remembers:
@@ -73,7 +73,7 @@ class StepMemory:
         return here
 
     def beside(self, here: int) -> NDArray[np.int32]:
-        """Grid cells that are a possible step from one."""
+        """Grid cells (k,), up to 8, that are a possible step from one."""
         return self._neighbour[here][self.possible[here]]
 
 
