@@ -53,6 +53,10 @@ class WallMesh:
     materials: tuple[SheetMaterial, ...]
     clutter: NDArray[np.bool_]
 
+    def __repr__(self) -> str:
+        """Numbers of triangles and materials in one line."""
+        return f"<WallMesh: {len(self.face_material)} triangles, {len(self.materials)} materials>"
+
 
 def build_mesh(plan: UncheckedPlan) -> WallMesh:
     """Build the sheets of a plan's walls, floor and ceiling.

@@ -64,6 +64,14 @@ class FloorPlan(UncheckedPlan):
     def __post_init__(self) -> None:
         check_plan(self)
 
+    def __repr__(self) -> str:
+        """Name and size in one line."""
+        x_min, y_min, x_max, y_max = self.bounds
+        return (
+            f"<FloorPlan {self.name!r}: {x_max - x_min:g} x {y_max - y_min:g} x "
+            f"{self.height_m:g} m, {len(self.walls)} walls>"
+        )
+
     @classmethod
     def of(cls, plan: UncheckedPlan) -> FloorPlan:
         """Check a plan; raise `PlanError` when a check fails."""

@@ -89,6 +89,10 @@ class TracedPoints:
     kept: KeptPaths
     is_limited: bool = False
 
+    def __repr__(self) -> str:
+        """Numbers of points and paths in one line."""
+        return f"<TracedPoints: {len(self.left_out)} points, {self.n_paths} paths>"
+
     @property
     def n_paths(self) -> int:
         """Number of paths."""

@@ -33,6 +33,13 @@ class Grid:
     height_m: float
     cell_size_m: float
 
+    def __repr__(self) -> str:
+        """Cells and heights in one line."""
+        return (
+            f"<Grid: {len(self.x)} x {len(self.y)} cells of {self.cell_size_m:g} m, from "
+            f"({self.x[0]:g}, {self.y[0]:g}), {self.height_m:g} m above the floor>"
+        )
+
     @classmethod
     def over(
         cls, bounds: tuple[float, float, float, float], cell_size_m: float, height_m: float

@@ -58,6 +58,14 @@ class Scene:
     horizontal_edges: tuple[HorizontalEdge, ...]
     material_edition: str = DEFAULT_EDITION
 
+    def __repr__(self) -> str:
+        """Size in one line."""
+        x_min, y_min, x_max, y_max = self.footprint.bounds
+        return (
+            f"<Scene: {x_max - x_min:g} x {y_max - y_min:g} x {self.height_m:g} m, "
+            f"{len(self.walls)} pieces of wall>"
+        )
+
     @property
     def view(self) -> PlanView:
         """The cells as the kernels see them."""

@@ -56,6 +56,11 @@ class DecisionProcess:
         if not self.cell_of_state.size:
             object.__setattr__(self, "cell_of_state", np.arange(self.n_states, dtype=np.int32))
 
+    def __repr__(self) -> str:
+        """Numbers of states and goals in one line."""
+        n = self.terminal.size
+        return f"<DecisionProcess: {n} states, {np.count_nonzero(self.terminal)} of them terminal>"
+
     @property
     def n_states(self) -> int:
         """Number S of states."""

@@ -65,6 +65,10 @@ class Solution:
     policy: NDArray[np.int32]
     sweeps: int
 
+    def __repr__(self) -> str:
+        """Number of states in one line."""
+        return f"<Solution: action values of {len(self.q)} states>"
+
 
 def path_length_m(world: GridWorld, cells: NDArray[np.int32]) -> float:
     """Length [m] of a flight through cells (n + 1,)."""

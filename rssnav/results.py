@@ -87,6 +87,13 @@ class TrainingResult:
     n_discrete_states: NDArray[np.int64]
     q: NDArray[np.float64] | None = None
 
+    def __repr__(self) -> str:
+        """Agent, runs and success in one line."""
+        return (
+            f"<TrainingResult: {self.agent.name} in {self.world.plan_name!r}, "
+            f"{np.count_nonzero(self.reached)} of {len(self.run_ids)} runs reach the transmitter>"
+        )
+
     @property
     def complete(self) -> bool:
         """Whether all realisations of the schedule are present."""

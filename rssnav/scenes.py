@@ -72,6 +72,10 @@ class PlanScene:
     plan: FloorPlan
     scene: Scene
 
+    def __repr__(self) -> str:
+        """Plan and scene in one line."""
+        return f"<PlanScene: {self.plan!r}, {self.scene!r}>"
+
     @classmethod
     def of(cls, plan: FloorPlan, edition: str | None = None) -> "PlanScene":
         """Build a plan's scene; parameters and errors as of `scene_of`."""

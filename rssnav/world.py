@@ -74,6 +74,10 @@ class GridWorld:
     plan_name: str
     plan_sha256: str
 
+    def __repr__(self) -> str:
+        """Plan, cells and speed in one line."""
+        return f"<GridWorld of {self.plan_name!r}: {len(self.position)} cells, speed {self.speed}>"
+
     @classmethod
     def from_map(
         cls,

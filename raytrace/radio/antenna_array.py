@@ -67,6 +67,10 @@ class AntennaArray:
         object.__setattr__(self, "offsets", tuple(map(tuple, offsets.tolist())))
         object.__setattr__(self, "weights", tuple(weights.tolist()))
 
+    def __repr__(self) -> str:
+        """Number and kind of elements in one line."""
+        return f"<AntennaArray: {self.describe()}>"
+
     @classmethod
     def linear(
         cls,

@@ -78,6 +78,11 @@ class PatternTable:
                     f"up to {MAX_WEIGHT:g}"
                 )
 
+    def __repr__(self) -> str:
+        """Name and directions in one line."""
+        n, m = self.e_theta.shape
+        return f"<PatternTable {self.name!r}: {n} x {m} directions>"
+
     def __eq__(self, other: object) -> bool:
         """Whether another antenna has the same table."""
         return isinstance(other, PatternTable) and all(

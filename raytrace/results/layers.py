@@ -61,12 +61,22 @@ LAYERS: dict[str, LayerInfo] = {
 }
 """The fields of a `RadioMap` that hold one value per cell, in the order they are stored in."""
 
+LABELS = {"rss_dbm": "RSS", "rss_coherent_dbm": "coherent RSS", "k_factor_db": "K factor"}
+"""Names of layers in pictures, where they are not that of the field without its unit."""
+
 EMPTY = {
     **{name: info.without_path for name, info in LAYERS.items() if info.without_path is not None},
     "path_count": 0,
     "left_out_db": -np.inf,
 }
 """Value of each layer in a cell that no path can reach."""
+
+
+def label_of(layer: str) -> str:
+    """Name and unit of a layer, for the axes of pictures: "RSS [dBm]"."""
+    units = LAYERS[layer].units
+    name = LABELS.get(layer, layer.removesuffix(f"_{units.lower()}").replace("_", " "))
+    return name if units == "1" else f"{name} [{units}]"
 
 
 def layers_of(sums: Sums, straight_m: Floats, power_dbm: float) -> dict[str, NDArray[Any]]:

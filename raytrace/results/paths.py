@@ -380,6 +380,11 @@ class ImpulseResponse:
     taps: Complexes
     delay_s: Floats
 
+    def __repr__(self) -> str:
+        """Numbers of receivers and taps in one line."""
+        n, taps = self.taps.shape
+        return f"<ImpulseResponse: {n} receivers, {taps} taps from {self.delay_s[0] * 1e9:g} ns>"
+
 
 def _joined_pairs(pairs: list[Complexes], others: list[int]) -> Complexes | None:
     """Join the gains of pairs; lists without any must be empty ones."""

@@ -16,7 +16,7 @@ from raytrace.grid import Grid
 from raytrace.radio.antennas import Antenna, HalfWaveDipole
 from raytrace.radio.transmitter import Transmitter
 from raytrace.results.csv_file import write_csv
-from raytrace.results.layers import EMPTY, LAYERS
+from raytrace.results.layers import EMPTY, LAYERS, label_of
 from raytrace.results.map_file import attributes_of, read_map_file, write_map_file
 from raytrace.results.map_plot import plot_layer
 
@@ -163,7 +163,7 @@ class RadioMap:
         if layer not in self.layers:
             raise ValueError(f"layer = {layer!r}: expected one of {', '.join(self.layers)}")
         values = np.where(self.path_count > 0, self.layers[layer], np.nan)
-        label = f"{layer} [{LAYERS[layer].units}]"
+        label = label_of(layer)
         axes = plot_layer(self.grid, values, label, ax=ax, walls=walls)
         x, y, _ = self.transmitter.position
         axes.plot(x, y, "*", color="white", markeredgecolor="black", markersize=14.0)

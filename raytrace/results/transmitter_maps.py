@@ -64,6 +64,11 @@ class TransmitterMaps(Mapping[str, RadioMap]):
                         "maps that were traced together"
                     )
 
+    def __repr__(self) -> str:
+        """Names and cells in one line."""
+        n_y, n_x = self.first.rss_dbm.shape
+        return f"<TransmitterMaps of {', '.join(self.names)}: {n_x} x {n_y} cells>"
+
     def __getitem__(self, name: str) -> RadioMap:
         """Return the map of a transmitter."""
         return self.maps[name]

@@ -179,9 +179,9 @@ def _print(found: Calibration) -> None:
         say(_of_door(state))
     for told in found.found.not_told:
         say(
-            f"{told.value.material}, {told.value.kind}: not fitted; one standard deviation of its "
-            f"prior changes readings by {told.sensitivity_db:.2g} dB, and they narrow the prior "
-            f"to {100.0 * told.narrowing:.0f} %"
+            f"{told.value.material}, {told.value.kind}: not fitted, as the readings tell too "
+            f"little of it (a standard deviation changes them by {told.sensitivity_db:.2g} dB; they "
+            f"narrow its range to {100.0 * told.narrowing:.0f} %)"
         )
     for doubt in found.doubts:
         say(f"doubtful: {doubt}")

@@ -3,7 +3,7 @@
 The list of commands and shell completion need no other library, so they are fast.
 """
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, NamedTuple
@@ -112,12 +112,31 @@ def _unloaded() -> None:
     """Placeholder of a command until `Commands` loads it."""
 
 
-def _join_help_lines(command: Any) -> None:
-    """Make each paragraph of a docstring one line, which the terminal wraps at its own width."""
+def _tidy_help(command: Any) -> None:
+    """Make each paragraph of a docstring one line, and hide types that say nothing."""
+    command.get_params = _without_types(command.get_params)
     paragraphs = (command.help or "").split("\n\n")
     command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
     for part in getattr(command, "commands", {}).values():
-        _join_help_lines(part)
+        _tidy_help(part)
+
+
+def _without_types(get_params: Callable[[Any], list[Any]]) -> Callable[[Any], list[Any]]:
+    """Show no type of a flag ("<bool>") or beside a name of an argument that tells it."""
+
+    def plain(context: Any) -> list[Any]:
+        parameters = get_params(context)
+        for parameter in parameters:
+            named = parameter.param_type_name == "argument" and parameter.metavar
+            if named or getattr(parameter, "is_flag", False):
+                parameter.display_type_rich = _nothing
+        return parameters
+
+    return plain
+
+
+def _nothing(**_context: Any) -> str:
+    return ""
 
 
 @contextmanager
@@ -140,8 +159,12 @@ class Commands(TyperGroup):
         for module in COMMANDS[name].modules:
             import_module(f"rssnav.cli.{module}").add_to(part)
         self.commands[name] = get_group(part).commands[name]
-        _join_help_lines(self.commands[name])
+        _tidy_help(self.commands[name])
         check_before_work(self.commands[name])
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Options of the group itself."""
+        return _without_types(super().get_params)(ctx)
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run a command line, on terminals of any encoding and into pipes that close early."""

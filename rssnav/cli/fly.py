@@ -36,7 +36,7 @@ def fly(
     trainings: Annotated[
         list[Path],
         typer.Argument(
-            metavar="TRAINING...",
+            metavar="TRAINING",
             help="Training results (rssnav train -o); one flight of each is shown.",
             show_default=False,
         ),

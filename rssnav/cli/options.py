@@ -251,7 +251,7 @@ Seed = Annotated[
     typer.Option("--seed", metavar="N", min=0, max=2**63 - 1, help="Seed of the random numbers."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-Force = Annotated[bool, typer.Option("--force", help="Recompute, and overwrite FILE.")]
+Force = Annotated[bool, typer.Option("--force", help="Recompute, and overwrite what is there.")]
 Picture = Annotated[
     Path | None,
     typer.Option(

@@ -242,7 +242,7 @@ def _print(rows: list[dict[str, Any]], totals: dict[str, Any]) -> None:
             ("RSS, coherent sum", f"{totals['rss_coherent_dbm']:.2f} dBm"),
             ("mean delay", f"{totals['mean_delay_s'] * 1e9:.2f} ns"),
             ("rms delay spread", f"{totals['delay_spread_s'] * 1e9:.2f} ns"),
-            ("angular spread", f"{totals['angular_spread']:.3f}"),
+            ("angular spread", f"{totals['angular_spread']:.3f} (0 to 1)"),
             ("K factor", f"{totals['k_factor_db']:.2f} dB"),
         ]
     )

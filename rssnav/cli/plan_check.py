@@ -203,17 +203,16 @@ def _print_checked(
     if for_map:
         say("\nfor a map")
         _print_findings(for_map)
-    say("\nfor a flight")
     if flights:
+        say("\nfor a flight, the shortest from the start to the source")
         _print_flights(flights)
         _print_findings([finding for finding in findings if finding.concerns == "flight"])
     else:
         missing = " and no ".join(k for k in ("source", "start") if getattr(plan, k) is None)
-        say(f"not checked, because the plan has no {missing}")
+        say(f"\nfor a flight: not checked, because the plan has no {missing}")
 
 
 def _print_flights(flights: Sequence["Reach"]) -> None:
-    say("shortest flight from the start to the source")
     print_table(
         (">speed", ">steps", ">length", ""),
         [

@@ -289,8 +289,8 @@ def _print(summary: dict[str, Any], output: Path | None) -> None:
         ("runs", f"{runs} of {_text(summary['episodes'])} episodes, seed {summary['seed']}"),
         ("states", _text(summary["labels"])),
         ("truncated episodes", summary["truncated_episodes"]),
-        ("CPU time", f"{summary['cpu_s']:.1f} s"),
-        ("converged", f"{summary['converged_runs']} of {runs}"),
+        ("CPU time", f"{summary['cpu_s']:.2g} s"),
+        ("converged", f"{summary['converged_runs']} of {runs} (three equal flights in a row)"),
     ]
     if summary["converged_runs"]:
         pairs += [

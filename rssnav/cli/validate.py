@@ -124,11 +124,11 @@ def _print(survey: Survey, found: Validation) -> None:
             for row in found.rows
         ],
     )
-    floor = "too few neighbours"
+    floor = "unknown, too few neighbours"
     if found.floor is not None:
         floor = (
-            f"{found.floor.sigma_db:.2f} dB, from {found.floor.n_pairs} pairs of neighbours "
-            f"{found.floor.distance_m:.2f} m apart"
+            f"{found.floor.sigma_db:.2f} dB, as much as readings {found.floor.distance_m:.2f} m "
+            f"apart differ ({found.floor.n_pairs} pairs)"
         )
     print_pairs([("readings", len(survey)), ("places", survey.n_places), ("floor", floor)])
     say(sentence_of(survey, found))

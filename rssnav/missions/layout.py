@@ -71,6 +71,10 @@ class Layout:
     step_length_m: NDArray[np.float64]
     plan_name: str
 
+    def __repr__(self) -> str:
+        """Plan, cells and speed in one line."""
+        return f"<Layout of {self.plan_name!r}: {self.n_states} cells, speed {self.speed}>"
+
     @classmethod
     def of_plan(cls, plan: FloorPlan, grid: Grid, speed: int = 1) -> Layout:
         """Find the steps between the cells of a grid inside a plan's outline.

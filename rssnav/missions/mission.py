@@ -82,6 +82,10 @@ class Mission:
         if not (self.starts.size and self.starts.min() >= 0 and self.starts.max() < s):
             raise WorldError(f"mission {self.name!r}: starts must be some of the {s} cells")
 
+    def __repr__(self) -> str:
+        """Cells and modes in one line."""
+        return f"<Mission {self.name!r}: {self.n_states} cells, {self.n_modes} modes>"
+
     @property
     def layout(self) -> Layout:
         """Layout of the first mode: cells, positions and lengths are those of all."""

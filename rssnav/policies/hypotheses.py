@@ -71,6 +71,10 @@ class Hypotheses:
         columns = [_hops(layouts[h], self.found[:, h]) for h in range(shape[1])]
         object.__setattr__(self, "hops", np.stack(columns, axis=1))
 
+    def __repr__(self) -> str:
+        """Numbers of cells and places in one line."""
+        return f"<Hypotheses: {len(self.position)} places, {self.layout.n_states} cells>"
+
     @classmethod
     def of_mission(cls, mission: Mission, task: Task) -> Hypotheses:
         """Return the modes of a mission: true places, states of doors and maps, and their chain.

@@ -66,6 +66,7 @@ def room(tmp_path_factory):
 def test_help_has_an_example_that_parses(command, monkeypatch) -> None:
     monkeypatch.setenv("COLUMNS", "100")
     text = done(*command, "--help")
+    assert not re.search(r"<(bool|str|list.*)>", text)  # a flag takes no value
     lines = re.findall(r"^ +(rssnav .*?) *$", text.split("Examples:")[1], re.MULTILINE)
     assert lines
     for line in lines:

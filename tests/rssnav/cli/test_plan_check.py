@@ -32,7 +32,7 @@ def test_new_plan_passes_the_check_and_is_not_overwritten(tmp_path) -> None:
 def test_what_concerns_a_map_is_apart_from_what_concerns_a_flight(tmp_path) -> None:
     closet = ROOM + f'\n[[walls]]\npoints = {CLOSET}\nmaterial = "wood"\nthickness_m = 0.1\n'
     text = done("plan", "check", room_file(tmp_path, closet))
-    before, after = text.split("\nfor a flight\n")
+    before, after = text.split("\nfor a flight, ")
     assert "no door" in after
     assert "no door" not in before
     without = "".join(
@@ -130,7 +130,7 @@ def test_cells_behind_a_shut_door_are_told(tmp_path) -> None:
 
 def test_a_plan_whose_source_no_flight_reaches_is_good_for_maps(tmp_path) -> None:
     path = room_file(tmp_path, edited(DOOR, ""))
-    before, after = done("plan", "check", path).split("\nfor a flight\n")
+    before, after = done("plan", "check", path).split("\nfor a flight, ")
     assert "warning" not in before
     assert "warning  (1.200, 1.100)  source not reached: at speeds 1, 2, 4 no cell" in after
     assert "no speed from 1 to 8 can: open a way in the plan" in after
