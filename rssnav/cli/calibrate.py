@@ -180,8 +180,8 @@ def _print(found: Calibration) -> None:
     for told in found.found.not_told:
         say(
             f"{told.value.material}, {told.value.kind}: not fitted, as the readings tell too "
-            f"little of it (a standard deviation changes them by {told.sensitivity_db:.2g} dB; they "
-            f"narrow its range to {100.0 * told.narrowing:.0f} %)"
+            f"little of it (a standard deviation changes them by {told.sensitivity_db:.2g} dB; "
+            f"they narrow its range to {100.0 * told.narrowing:.0f} %)"
         )
     for doubt in found.doubts:
         say(f"doubtful: {doubt}")
