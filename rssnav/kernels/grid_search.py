@@ -53,6 +53,47 @@ def explore(
                 tail += 1
 
 
+@jit()
+def steps_to_found(
+    next_state: NDArray[np.int32],
+    found: NDArray[np.bool_],
+    hops: NDArray[np.int32],
+    queue: NDArray[np.int32],
+    reached: NDArray[np.int32],
+) -> None:
+    """Fewest steps from each cell to where each hypothesis is found, breadth first.
+
+    A step is possible if and only if the step back is.
+
+    Parameters
+    ----------
+    next_state : (S, 8) int32
+        Cell after each action; -1 where it is impossible.
+    found : (S, H) bool
+        Where each hypothesis is found.
+    hops : (S, H) int32
+        Receives the steps; cells without a way keep what they have.
+    queue, reached : (S,) int32
+        Buffers.
+    """
+    n_cells, count = found.shape
+    reached[:] = -1
+    for h in range(count):
+        head, tail = 0, 0
+        for cell in range(n_cells):
+            if found[cell, h]:
+                hops[cell, h], queue[tail], reached[cell] = 0, cell, h
+                tail += 1
+        while head < tail:
+            cell = queue[head]
+            head += 1
+            for a in range(8):
+                there = next_state[cell, a]
+                if there >= 0 and reached[there] != h:
+                    hops[there, h], queue[tail], reached[there] = hops[cell, h] + 1, there, h
+                    tail += 1
+
+
 @jit(inline=True)
 def log_likelihood(
     reading_dbm: float, expected_dbm: float, sigma_db: float, sensitivity_dbm: float

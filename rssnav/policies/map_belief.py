@@ -14,9 +14,9 @@ from scipy.special import log_ndtr
 
 from rssnav.arguments import require
 from rssnav.discrete_states import AGENT_SENSITIVITY_DBM, heard
-from rssnav.kernels.grid_search import expected_cost
+from rssnav.kernels.grid_search import expected_cost, steps_to_found
 from rssnav.missions.policy import Seen
-from rssnav.policies.hypotheses import Hypotheses
+from rssnav.policies.hypotheses import NO_WAY, Hypotheses
 from rssnav.policies.step_memory import StepMemory, any_step
 
 MISSED = float(np.log(0.02))
@@ -111,6 +111,37 @@ class MapBelief:
         self.probability = weight / weight.sum()
 
 
+class _KnownHops:
+    """Fewest steps to where each hypothesis would be found, by the doors that were seen closed.
+
+    Hypotheses that have steps of their own, for the state of the doors, keep theirs.
+    """
+
+    def __init__(self, hypotheses: Hypotheses) -> None:
+        self._hypotheses = hypotheses
+        self._own = bool(hypotheses.layouts)
+        size = hypotheses.layout.n_states
+        self._queue, self._reached = np.empty(size, np.int32), np.empty(size, np.int32)
+        self.begin()
+
+    def begin(self) -> None:
+        """Forget the doors of the last flight."""
+        self.values = self._hypotheses.hops
+        self._next = self._hypotheses.layout.next_state
+
+    def see(self, cell: int, mask: NDArray[np.bool_]) -> None:
+        """Note the possible actions in a cell; where steps are missing, find other ways."""
+        blocked = np.flatnonzero((self._next[cell] >= 0) & ~mask)
+        if self._own or not blocked.size:
+            return
+        there = self._next[cell, blocked]
+        self._next = self._next.copy()
+        self._next[cell, blocked] = -1
+        self._next[there, (blocked + 4) % 8] = -1
+        self.values = np.full_like(self.values, NO_WAY)
+        steps_to_found(self._next, self._hypotheses.found, self.values, self._queue, self._reached)
+
+
 @dataclass(eq=False)
 class _MapPolicy:
     """What the policies of this module share: belief, and steps to choose from."""
@@ -121,15 +152,18 @@ class _MapPolicy:
 
     def __post_init__(self) -> None:
         self.belief = MapBelief(self.hypotheses, self.likelihood)
+        self._hops = _KnownHops(self.hypotheses)
 
     def begin(self, generator: np.random.Generator) -> None:
         """Forget the last flight."""
         self._generator = generator
         self.belief.begin()
+        self._hops.begin()
         self._flown = False
 
-    def _weigh(self, observation: Seen) -> None:
+    def _weigh(self, observation: Seen, mask: NDArray[np.bool_]) -> None:
         self.belief.update(observation.cell, observation.reading_dbm, moved=self._flown)
+        self._hops.see(observation.cell, mask)
         self._flown = True
 
     def _best(self, mask: NDArray[np.bool_], costs: NDArray[np.float64]) -> int:
@@ -183,10 +217,10 @@ class MapSearch(_MapPolicy):
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
         """Weigh by the reading, and fly a step to the target; see `rssnav.missions.Policy.act`."""
-        self._weigh(observation)
+        self._weigh(observation, mask)
         here = self._steps.see(observation.cell, mask)
         if self._target in (-1, here) or self._since >= self.steps_to_draw:
-            hypothesis = self._choose(self.hypotheses.hops[observation.cell])
+            hypothesis = self._choose(self._hops.values[observation.cell])
             self._target, self._since = self._cell_of(hypothesis), 0
         self._since += 1
         action = int(self._steps.first[self._target])
@@ -228,9 +262,9 @@ class Qmdp(_MapPolicy):
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
         """Weigh by the reading, and fly the best step; see `rssnav.missions.Policy.act`."""
-        self._weigh(observation)
+        self._weigh(observation, mask)
         there = self.hypotheses.layout.next_state[observation.cell, mask]
-        left = self.hypotheses.hops[there].astype(np.float64)
+        left = self._hops.values[there].astype(np.float64)
         return self._best(mask, left @ self.belief.probability)
 
 
@@ -273,10 +307,10 @@ class Infotaxis(_MapPolicy):
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
         """Fly the step of the least expected cost; see `rssnav.missions.Policy.act`."""
-        self._weigh(observation)
+        self._weigh(observation, mask)
         there = self.hypotheses.layout.next_state[observation.cell, mask]
         belief = self.belief.probability
-        hops = self.hypotheses.hops[there].astype(np.float64)
+        hops = self._hops.values[there].astype(np.float64)
         costs = np.array([self._expected(int(cell)) for cell in there])
         return self._best(mask, costs + _TIE * (hops @ belief))
 
@@ -291,7 +325,7 @@ class Infotaxis(_MapPolicy):
                 np.where(likely, self.belief.probability, 0.0),
                 expected_dbm,
                 self.hypotheses.found[cell],
-                self.hypotheses.hops[cell],
+                self._hops.values[cell],
                 levels_dbm,
                 sigma_db,
                 self.space_aware,

@@ -295,6 +295,29 @@ def test_hypotheses_of_a_plan_are_at_most_a_step_from_every_cell_and_where_they_
     assert maps.hops.max() < NO_WAY
 
 
+@pytest.mark.parametrize("make", [MapSearch, Qmdp, Infotaxis])
+def test_searchers_with_maps_find_ways_round_doors_that_they_saw_closed(make):
+    """Of one hypothesis that is true, they reach it after the detour, and not later."""
+    mission = room_mission(ModeProcess(np.eye(4)[2], np.eye(4)))  # door closed, first place
+    opened = room_mission().layouts[0]
+    rss_dbm, found = mission.rss_dbm[2][:, None], TASK.goal.cells(mission)[2][:, None]
+    maps = Hypotheses(opened, rss_dbm, found, mission.source[[2]])
+    flights = fly(mission, TASK, SIGHT, make(maps), episodes=3)
+    assert flights.found.all()
+    closed = Hypotheses(mission.layouts[1], rss_dbm, found, mission.source[[2]])
+    start = mission.starts[0]
+    beside = mission.layout.nearest(4.5, 1.5)  # the door, on the side of the start
+    detour = _steps_between(opened, start, beside) + closed.hops[beside, 0]
+    assert np.all(flights.steps <= detour)
+    assert np.all(flights.steps >= closed.hops[start, 0])
+
+
+def _steps_between(layout, start, cell):
+    goal = np.zeros((layout.n_states, 1), dtype=bool)
+    goal[cell] = True
+    return Hypotheses(layout, np.zeros(goal.shape), goal, layout.position[[cell]]).hops[start, 0]
+
+
 def test_without_memory_a_step_that_was_seen_blocked_is_tried_again():
     layout = open_room().layout
     for remembers in (True, False):
