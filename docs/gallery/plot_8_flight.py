@@ -30,7 +30,7 @@ print(flight.label)
 with drawing():
     scene = FlightScene(plan, radio_map, [flight])
 first = scene.frame(0)
-screen = plt.figure(figsize=(first.shape[1] / 100, first.shape[0] / 100), dpi=100)
+screen = plt.figure(figsize=(first.shape[1] / 100, first.shape[0] / 100), dpi=60)
 ax = screen.add_axes((0.0, 0.0, 1.0, 1.0))
 ax.axis("off")
 image = ax.imshow(first)

@@ -39,7 +39,9 @@ Y_UP = np.array(
 
 GLASS_OPACITY = 0.35
 FLOOR_COLOUR = "#cfc9ba"
-MARKER_RADIUS_M = 0.15
+MARKER_RADIUS_M, MARKER_SHARE = 0.15, 0.006
+"""Radius of source, transmitters and start, and at least as a fraction of the plan's diagonal."""
+
 LINE_RADIUS_M = 0.02
 CAMERA_PITCH_DEG = -50.0
 FIELD_OF_VIEW_DEG = 45.0
@@ -51,6 +53,9 @@ _WIDE = 1.15
 
 _MARGIN = 1.2
 """Half the height of a page over that of the scene, which the legends need."""
+
+_NEARER, _FARTHER = 100.0, 20.0
+"""How much one may come nearer and go farther; in a wider range sheets close to each other mix."""
 
 _RAISED = 0.06
 """How much higher than the middle of a page the scene is, for the legend below it; a share."""
@@ -103,14 +108,22 @@ def plan_scene(plan: FloorPlan, *, opacity: float = 1.0, ceiling: bool = False) 
     if ceiling:
         slab = slab_triangles(plan.outline, plan.height_m)
         add_triangles(scene, "ceiling", slab, plan.colour_of(plan.ceiling_material), 0.5)
+    radius_m = marker_radius_m(plan)
     if plan.source is not None:
-        add_points(scene, "source", [plan.source], SOURCE)
+        add_points(scene, "source", [plan.source], SOURCE, radius_m)
     if plan.transmitters:
-        add_points(scene, "transmitters", [t.position for t in plan.transmitters], SOURCE)
+        places = [t.position for t in plan.transmitters]
+        add_points(scene, "transmitters", places, SOURCE, radius_m)
     if plan.start is not None:
-        add_points(scene, "start", [(*plan.start, MARKER_RADIUS_M)], START)
+        add_points(scene, "start", [(*plan.start, radius_m)], START, radius_m)
     _set_camera(scene)
     return scene
+
+
+def marker_radius_m(plan: FloorPlan) -> float:
+    """Radius of a ball that is seen in the whole of a plan [m]."""
+    x_min, y_min, x_max, y_max = plan.bounds
+    return max(MARKER_RADIUS_M, MARKER_SHARE * float(np.hypot(x_max - x_min, y_max - y_min)))
 
 
 def add_triangles(
@@ -327,6 +340,7 @@ def _set_camera(scene: trimesh.Scene) -> None:
         center=(low + high) / 2,
         fov=(FIELD_OF_VIEW_DEG, FIELD_OF_VIEW_DEG),
     )
+    scene.camera.z_near, scene.camera.z_far = float(distance) / _NEARER, float(distance) * _FARTHER
 
 
 def _half_angles(scene: trimesh.Scene) -> NDArray[np.float64]:

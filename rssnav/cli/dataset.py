@@ -85,8 +85,8 @@ def make(
 ) -> None:
     """Make a data set of radio maps, or what is missing of it.
 
-    Finished plans are kept: run the same command again after an interruption, and only the others
-    are traced. Where and on how many processors they are traced does not change a bit.
+    Finished plans are saved: after an interruption the same command traces only the others. The
+    number of processors and machines does not change the result.
     """
     from rssnav.datasets.making import estimate_dataset, make_dataset
     from rssnav.datasets.spec import load_spec

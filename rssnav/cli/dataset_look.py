@@ -37,7 +37,7 @@ def add_to(group: typer.Typer) -> None:
 
 
 def check(dataset: Folder, as_json: Json = False) -> None:
-    """Check every file, hash and value of a data set; exit with 1 if anything is wrong."""
+    """Check every file, hash and value of a data set; exit with status 1 on errors."""
     from rssnav.datasets.checks import problems
 
     with one_progress("plans") as progress:

@@ -19,7 +19,10 @@ ImportedFile = Annotated[
 Output = Annotated[
     Path, typer.Option("-o", "--output", metavar="FILE", help="The .toml file to write.")
 ]
-Name = Annotated[str | None, typer.Option(help="Name of the plan.", show_default="the file's")]
+Name = Annotated[
+    str | None,
+    typer.Option(metavar="NAME", help="Name of the plan.", show_default="the file's"),
+]
 CeilingHeight = Annotated[
     float | None,
     typer.Option(
@@ -49,7 +52,12 @@ WallMaterial = Annotated[
     ),
 ]
 SlabMaterial = Annotated[
-    str | None, typer.Option(metavar="MATERIAL", show_default="the file's, or concrete")
+    str | None,
+    typer.Option(
+        metavar="MATERIAL",
+        help="Material of the floor or of the ceiling.",
+        show_default="the file's, or concrete",
+    ),
 ]
 Source = Annotated[
     str | None,
@@ -62,11 +70,14 @@ Start = Annotated[
 Unit = Annotated[
     str | None,
     typer.Option(
-        help="Unit of length in the file: mm, cm, m, in, ft ...", show_default="the file's"
+        metavar="UNIT",
+        help="Unit of length in the file: mm, cm, m, in, ft ...",
+        show_default="the file's",
     ),
 ]
 Level = Annotated[
-    str | None, typer.Option(help="Storey to import; required if the file has several.")
+    str | None,
+    typer.Option(metavar="NAME", help="Storey to import; required if the file has several."),
 ]
 Scale = Annotated[
     float | None,

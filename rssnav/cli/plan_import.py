@@ -81,9 +81,9 @@ def import_file(
 ) -> None:
     """Create a plan from a drawing, a venue, a robot's map or a building model.
 
-    What the file does not state gets a default that the plan's file marks as assumed; the report
-    lists what became of every layer, and the repairs. Of a building that is open, a draft of the
-    plan and a picture of the gaps are written instead.
+    What the file does not state gets a default, marked as assumed in the plan; the report lists
+    what became of every layer, and the repairs. Where no usable plan comes out, as with gaps in the
+    outline that are too wide to close, a draft and a picture of the gaps are written instead.
     """
     check_suffix(output, (".toml",), "--output")
     if save_layers is not None:

@@ -48,7 +48,7 @@ def empty_figure() -> figure:
     """Return a figure true to scale, without frame lines and without the library's logo."""
     model = figure(
         sizing_mode="stretch_both",
-        min_height=280,
+        min_height=200,
         match_aspect=True,
         tools=[PanTool(), WheelZoomTool(), ResetTool()],
         toolbar_location="right",

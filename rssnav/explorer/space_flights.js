@@ -24,7 +24,7 @@ function tubes(points, colour, radius, opacity) {
 }
 
 function uavAt(points, colour) {
-  const shape = new THREE.OctahedronGeometry(6 * LOOK.radius);
+  const shape = new THREE.OctahedronGeometry(5 * LOOK.radius);
   const inFront = { depthTest: false, transparent: true };  // seen through walls, after them
   const body = new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: colour, ...inFront }));
   const rim = new THREE.LineBasicMaterial({ color: 0xffffff, ...inFront });

@@ -20,6 +20,7 @@ from floorplans.pictures.viewer_3d import (
     ColourBar,
     add_lines,
     add_points,
+    marker_radius_m,
     plan_scene,
     scene_html,
 )
@@ -33,7 +34,7 @@ from rssnav.pictures.style import INK
 
 LINE_RADIUS = 0.002
 """Radius of a path, as a fraction of the plan's diagonal; a flight is twice as thick."""
-OPACITY = 0.45
+OPACITY = 0.3
 LIFT_M = 0.01
 """Height of the map above the floor."""
 TEXTURE_PX = 1024
@@ -63,7 +64,7 @@ def page_3d(
     if found is not None:
         lines = strongest(found)
         add_lines(scene, "paths", lines, path_colours(found.power_dbm[: len(lines)]), radius_m)
-        add_points(scene, "receiver", [found.receiver], INK)
+        add_points(scene, "receiver", [found.receiver], INK, marker_radius_m(plan))
         x, y, z = found.receiver
         title = f"{plan.name}: paths to ({x:g}, {y:g}, {z:g}) m"
     page = escape(scene_html(scene, title, bar).replace("</body>", f"{flights}</body>"))
@@ -102,7 +103,8 @@ def _glowing(picture: NDArray[np.uint8]) -> PBRMaterial:
         baseColorTexture=Image.fromarray(black),
         emissiveTexture=Image.fromarray((255 * stored).round().astype(np.uint8)),
         emissiveFactor=(1.0, 1.0, 1.0),
-        alphaMode="BLEND",
+        alphaMode="MASK",  # drawn before what is transparent, so that walls are seen over it
+        alphaCutoff=0.5,
         doubleSided=True,
         metallicFactor=0.0,
         roughnessFactor=1.0,

@@ -36,7 +36,7 @@ def tab(opened, address, tmp_path, request) -> Iterator[Tab]:
     """A tab that tests share; each leaves a picture, and must not have asked elsewhere."""
     yield opened
     opened.page.screenshot(path=tmp_path / f"{request.node.name}.png")
-    assert not opened.errors
+    assert opened.errors == []
     local = (address, "blob:", "data:", "about:")
     assert [url for url in opened.requests if not url.startswith(local)] == []
 
@@ -107,7 +107,8 @@ def space_of(tab: Tab, n_flights: int) -> dict:
     for _ in range(PATIENCE_MS // 250):
         with suppress(Error):  # a new map or other paths come with a new frame
             frame = tab.page.locator("iframe[title='3D']").element_handle().content_frame()
-            if frame.evaluate(f"typeof uavs != 'undefined' && uavs.length == {n_flights}"):
+            ready = f"typeof uavs != 'undefined' && uavs.length == {n_flights}"
+            if frame and frame.evaluate(ready):
                 return frame.evaluate(SPACE)
         tab.page.wait_for_timeout(250)
     raise AssertionError(f"the view does not show {n_flights} flights")
@@ -124,16 +125,20 @@ def test_flights_play_in_three_dimensions_too(tab) -> None:
     assert shown["at"] == shown["ends"]
     assert shown["at"][0][2] == pytest.approx(2.0)  # the receivers' height
     tab.page.get_by_role("button", name="Play learned flight").click()
-    tab.page.get_by_text(re.compile(r"^Learned in \d+ episodes: step 2 of")).wait_for()
+    tab.page.get_by_text(re.compile(r"^Learned in \d+ episodes: step [0-5] of")).wait_for()
     tab.page.locator("button.pause:visible").click()
-    tab.page.wait_for_timeout(200)
+    tab.page.wait_for_timeout(500)
     words = tab.page.get_by_text(re.compile(r"^Learned in \d+ episodes")).inner_text()
+    step = int(re.search(r"step (\d+) of", words).group(1)) + 1
+    tab.page.locator("button.next:visible").click()
+    tab.page.get_by_text(re.compile(rf"^Learned in \d+ episodes: step {step} of")).wait_for()
+    tab.page.wait_for_timeout(500)
     shown = space_of(tab, 1)
-    assert shown["counts"] == [int(re.search(r"step (\d+) of", words).group(1))]
+    assert shown["counts"] == [step]
     assert shown["at"] != shown["ends"]
     tab.page.locator("button.first:visible").click()
     tab.page.get_by_text(re.compile(r"^Episode 1 of 1000: step 0 of")).wait_for()
-    tab.page.wait_for_timeout(200)
+    tab.page.wait_for_timeout(500)
     shown = space_of(tab, 1)
     assert shown["counts"] == [0]
     assert shown["at"][0][0] == pytest.approx(start)
