@@ -120,7 +120,7 @@ def load_spec(spec: str | Path) -> DatasetSpec:
     if len(content) > MAX_SPEC_BYTES:
         raise DatasetError(f"larger than {MAX_SPEC_BYTES} bytes", path)
     try:
-        return read_spec(content.decode("utf-8"), path)
+        return read_spec(content.decode("utf-8-sig"), path)
     except UnicodeDecodeError as error:
         raise DatasetError("not UTF-8", path) from error
 

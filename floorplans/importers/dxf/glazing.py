@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from collections.abc import Sequence
 
 import numpy as np
 import shapely
@@ -15,18 +14,25 @@ from floorplans.importers.centrelines.gaps import fill_gaps
 from floorplans.importers.centrelines.parallel_lines import strips_of_lines
 from floorplans.importers.defaults import WINDOW_MATERIAL, WINDOW_THICKNESS_M
 from floorplans.importers.draft import RawOpening, RawWall
+from floorplans.importers.dxf.curved_glazing import (
+    IN_WALL_M,
+    PAIR_M,
+    along_curve,
+    between_others,
+    is_bent,
+    is_curve_in_wall,
+    smooth_pieces,
+    without_caps,
+)
 from floorplans.importers.dxf.curves import Swing
 from floorplans.importers.dxf.drawing import Content
 from floorplans.importers.dxf.layers import Layers
 from floorplans.importers.dxf.openings import door_swings, loose_lines
 
-PAIR_M = 0.6
-"""Largest distance between the two lines of a wall [m]."""
 CLOSE_M = 0.02
 """Gaps between wall areas up to this are closed [m]."""
 MIN_SINGLE_M = 0.3
 """Shorter single lines are no walls [m]."""
-_IN_WALL_M = 0.05
 _CROSSING_M = 1.0
 
 
@@ -47,64 +53,51 @@ def loose_openings(
         for cluster in loose_lines(others, "window"):
             if _has_leaf(cluster.lines, leaves):
                 continue
-            if cluster.opening is not None and _is_in_wall(cluster.opening, area):
-                openings.append(cluster.opening)
-            elif _is_curve_in_wall(cluster.lines, area):
-                bent += _along_curve(cluster.lines)
+            lines = [piece for line in cluster.lines for piece in smooth_pieces(line)]
+            straight = None if is_bent(lines) else cluster.opening
+            if straight is not None and _is_in_wall(straight, area):
+                openings.append(straight)
+            elif is_curve_in_wall(lines, area):
+                bent += along_curve(lines)
             else:
-                glass += cluster.lines
+                glass += without_caps(lines)
     return openings, bent, glass
 
 
 def _has_leaf(lines: Sequence[LineString], leaves: Sequence[Swing]) -> bool:
     """Whether lines belong to a door's leaf."""
     joined = shapely.union_all(list(lines))
-    return any(Point(p).distance(joined) < _IN_WALL_M for s in leaves for p in (s.hinge, *s.ends))
+    return any(Point(p).distance(joined) < IN_WALL_M for s in leaves for p in (s.hinge, *s.ends))
 
 
 def _is_in_wall(opening: RawOpening, area: BaseGeometry) -> bool:
     """Whether an opening lies in a wall, or in a gap of one."""
-    in_wall = Point(opening.centre).distance(area) < _IN_WALL_M
+    in_wall = Point(opening.centre).distance(area) < IN_WALL_M
     return in_wall or bool(fill_gaps(area, [opening]))
-
-
-def _is_curve_in_wall(lines: Sequence[LineString], area: BaseGeometry) -> bool:
-    """Whether lines of a window that form no straight opening lie within a wall all along."""
-    wide = area.buffer(_IN_WALL_M)
-    return all(wide.covers(line) for line in lines)
-
-
-def _along_curve(lines: Sequence[LineString]) -> Iterator[RawOpening]:
-    """Windows on the chords of a curve: of several lines, that of middle length."""
-    by_length = sorted(lines, key=lambda line: line.length)
-    middle = [line for line in by_length if line.length > by_length[-1].length / 2]
-    chords = np.array(middle[len(middle) // 2].coords)
-    for a, b in pairwise(chords):
-        yield RawOpening.between((float(a[0]), float(a[1])), (float(b[0]), float(b[1])), "window")
 
 
 def _outside(line: LineString, area: BaseGeometry) -> BaseGeometry:
     """Line without the sections inside an area, except short crossings."""
     inside = shapely.get_parts(line.intersection(area))
     along = [part for part in inside if part.length > min(_CROSSING_M, 0.9 * line.length)]
-    return line.difference(shapely.union_all(along).buffer(_IN_WALL_M / 10))
+    return line.difference(shapely.union_all(along).buffer(IN_WALL_M / 10))
 
 
 def glass_walls(lines: Sequence[LineString], area: BaseGeometry) -> list[RawWall]:
     """Walls of glass on single lines, and between two lines that face each other.
 
-    Lines inside other walls or on their faces are ignored; a pane may cross walls.
+    Lines inside other walls or on their faces are ignored, and so are lines between two others; a
+    pane may cross walls.
     """
     if not lines:
         return []
-    wide = area.buffer(_IN_WALL_M)
+    wide = area.buffer(IN_WALL_M)
     parts = shapely.get_parts([_outside(line, wide) for line in lines])
     chains = [shapely.get_coordinates(part) for part in parts if part.length > MIN_SINGLE_M]
     if not chains:
         return []
-    walls = strips_of_lines(
-        np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in chains]), PAIR_M
-    )
+    segments = np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in chains])
+    walls = strips_of_lines(segments[~between_others(segments)], PAIR_M)
     found = walls_of_area(shapely.union_all(list(walls.area)), CLOSE_M) if walls.area else []
     ends = [(wall.start, wall.end) for wall in found]
     ends += [((x0, y0), (x1, y1)) for (x0, y0), (x1, y1) in walls.singles.tolist()]

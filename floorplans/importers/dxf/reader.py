@@ -32,12 +32,12 @@ from floorplans.importers.centrelines.split_by_material import by_material, with
 from floorplans.importers.centrelines.spurious import without_spurious_walls
 from floorplans.importers.draft import Draft, ImportOptions, RawOpening, RawWall
 from floorplans.importers.dxf.bodies import corners_of, thin_bodies, without_floors
+from floorplans.importers.dxf.curved_glazing import PAIR_M
 from floorplans.importers.dxf.curves import Curve, scaled_curve
 from floorplans.importers.dxf.drawing import Content, Symbol, load_document, read_content
 from floorplans.importers.dxf.glazing import (
     CLOSE_M,
     MIN_SINGLE_M,
-    PAIR_M,
     glass_walls,
     loose_openings,
 )

@@ -222,6 +222,33 @@ def test_windows_drawn_over_a_curved_wall_lose_no_glass(tmp_path: Path):
     assert plan.outline.area == pytest.approx(pi * 7.15**2, rel=0.02)
 
 
+@pytest.mark.parametrize("radii_m", [(9.0,), (8.97, 9.03), (8.9, 9.0, 9.1)])
+@pytest.mark.parametrize("interrupted", [False, True])
+def test_curved_windows_with_mullions_lose_no_glass(
+    radii_m: tuple[float, ...], interrupted: bool, tmp_path: Path
+):
+    doc = draw.new(6)
+    space = doc.modelspace()
+    sections = [(0, 20), (100, 120)] if interrupted else [(0, 120)]
+    for radius in (8.9, 9.1):
+        for begin, end in sections:
+            space.add_arc((0, 0), radius, begin, end, dxfattribs={"layer": "A-WALL"})
+    sides = LineString([(9, 0), (0.5, 0.9), (-4.5, 9 * sin(radians(120)))])
+    body = sides.buffer(0.1, cap_style="flat", join_style="mitre").exterior.coords[:-1]
+    space.add_lwpolyline(list(body), close=True, dxfattribs={"layer": "A-WALL"})
+    for begin in (20, 40, 60, 80):
+        for radius in radii_m:
+            ends = (begin + 0.3, begin + 19.7)
+            space.add_arc((0, 0), radius, *ends, dxfattribs={"layer": "A-GLAZ"})
+        for angle in (radians(begin + 0.3), radians(begin + 19.7)):
+            cap = [(r * cos(angle), r * sin(angle)) for r in (8.9, 9.1)]
+            space.add_line(*cap, dxfattribs={"layer": "A-GLAZ"})
+    plan = imported(doc, tmp_path, keep_axes=True).plan
+    glass_m = sum(w.length_m for w in plan.walls if w.material == "glass")
+    glass_m += sum(o.width_m for _, o in openings(plan) if o.kind == "window")
+    assert glass_m == pytest.approx(radians(80) * 9, rel=0.05)
+
+
 def test_a_hatch_leaves_its_holes_free(tmp_path: Path):
     doc = draw.new()
     hatch = doc.modelspace().add_hatch(dxfattribs={"layer": "WALL"})
