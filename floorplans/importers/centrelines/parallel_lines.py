@@ -10,6 +10,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from floorplans.importers.centrelines.joined_pieces import joined_pieces
 from floorplans.importers.centrelines.sections import linestrings
 from floorplans.walls import Interval, Point, complement
 
@@ -100,6 +101,8 @@ class StripWalls:
 def strips_of_lines(segments: Segments, max_thickness_m: float, heavy_m: float = 0.0) -> StripWalls:
     """Pair lines that face each other, the nearest first; each section has one partner.
 
+    Collinear pieces that touch are one line.
+
     Lines farther apart are the faces of heavy walls in a drawing that shows walls by both faces:
     where hardly any line is left single if they are. In a drawing of single lines they are the
     sides of a narrow room; in one of thin double walls such sides have their partners already.
@@ -119,9 +122,11 @@ def strips_of_lines(segments: Segments, max_thickness_m: float, heavy_m: float =
     """
     steps = segments[:, 1] - segments[:, 0]
     lengths = np.hypot(steps[:, 0], steps[:, 1])
-    segments, steps, lengths = (x[lengths > 1e-6] for x in (segments, steps, lengths))
+    segments = joined_pieces(segments[lengths > 1e-6])
     if not len(segments):
         return StripWalls((), segments)
+    steps = segments[:, 1] - segments[:, 0]
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
     starts, along = segments[:, 0].tolist(), (steps / lengths[:, None]).tolist()
     faces = [
         _Face((x, y), (ux, uy), length)

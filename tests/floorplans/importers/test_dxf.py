@@ -80,6 +80,21 @@ def test_the_flat_comes_out_of_every_habit(drawing: Callable[[], Drawing], tmp_p
     assert_is_the_flat(imported(drawing(), tmp_path).plan)
 
 
+@pytest.mark.parametrize("piece_mm", [30, 50, 300])
+def test_faces_in_pieces_are_whole_faces(piece_mm: float, tmp_path: Path):
+    doc = draw.flat_of_line_pairs()
+    space = doc.modelspace()
+    for line in list(space.query("LINE")):
+        start, step = line.dxf.start, line.dxf.end - line.dxf.start
+        n = max(round(step.magnitude / piece_mm), 1)
+        points = [start + step * (k / n) for k in range(n + 1)]
+        for a, b in zip(points, points[1:], strict=False):
+            ends = [(round(p.x), round(p.y)) for p in (b, a)]
+            space.add_line(*ends, dxfattribs={"layer": line.dxf.layer})
+        space.delete_entity(line)
+    assert_is_the_flat(imported(doc, tmp_path).plan)
+
+
 def test_single_lines_get_the_default_thickness(tmp_path: Path):
     result = imported(draw.flat_of_single_lines(), tmp_path)
     assert_is_the_flat(result.plan, thick=False)

@@ -52,6 +52,12 @@ def test_a_spec_that_is_no_toml_is_refused() -> None:
         spec_of("name = ")
 
 
+def test_a_byte_order_mark_is_no_part_of_a_spec(tmp_path) -> None:
+    path = tmp_path / "spec.toml"
+    path.write_text(SPEC, encoding="utf-8-sig")
+    assert load_spec(path).name == spec_of().name
+
+
 def test_defaults_and_limits_are_those_of_the_presets() -> None:
     configuration = spec_of().configuration
     assert configuration.presets == {"quick": TraceConfig(1, 0, 1)}
