@@ -30,8 +30,12 @@ MAX_THICKNESS_M = 1.0
 MAX_HEAVY_M = 2.5
 """Largest thickness of a long wall, as of heavy masonry [m]."""
 
-SQUATNESS = 0.5
-"""A free-standing piece wider than this fraction of its length is a pillar."""
+_SQUAT, _SLENDER = 0.62, 0.35
+"""Width over length of a free-standing piece from which on it is a pillar, and below which a wall;
+no common size of columns has either."""
+_LEAST_COLUMN_M = 0.2
+_GAP_M = 2.5
+_CLEAR_M = 0.05
 
 _LONG = 4.0  # area over squared width from which a thick part is a heavy wall
 
@@ -100,7 +104,7 @@ def _blocks(whole: BaseGeometry) -> tuple[list[Polygon], float]:
     ]
     blocks = [part for part, is_wall in zip(thick, heavy, strict=True) if not is_wall]
     walls_m = [w for w, is_wall in zip(widths_m, heavy, strict=True) if is_wall]
-    blocks += [part for part in _polygons(whole) if _is_pillar(part)]
+    blocks += [part for part in _polygons(whole) if _is_pillar(part, whole)]
     return blocks, max([MAX_THICKNESS_M, *(1.02 * width_m for width_m in walls_m)])
 
 
@@ -117,9 +121,38 @@ def _eroded(area: BaseGeometry, distance_m: float) -> BaseGeometry:
     return shapely.union_all(kept)
 
 
-def _is_pillar(part: Polygon) -> bool:
+def _is_pillar(part: Polygon, whole: BaseGeometry) -> bool:
+    """Whether a piece that touches no other is a pillar, by its shape and what is in line with it.
+
+    A squat piece is one and a slender piece is none. One between the two, as of 0.4 m x 0.8 m, may
+    be the pier of a wall whose gaps are not known: a wall in line with it goes on.
+    """
     width, length = box_sides(part)
-    return not part.interiors and SQUATNESS * length < width <= MAX_THICKNESS_M
+    if part.interiors or width > MAX_THICKNESS_M or width < _SLENDER * length:
+        return False
+    if width > _SQUAT * length:
+        return True
+    return width >= _LEAST_COLUMN_M and not _goes_on(part, whole, width)
+
+
+def _goes_on(part: Polygon, whole: BaseGeometry, width: float) -> bool:
+    """Whether a wall, no wider, begins within a door's or window's width ahead of a piece."""
+    a, b, c, d = shapely.get_coordinates(shapely.oriented_envelope(part))[:4]
+    if np.hypot(*(b - a)) > np.hypot(*(c - b)):
+        a, b, c, d = b, c, d, a
+    near = shapely.clip_by_rect(whole, *part.buffer(_GAP_M + width).bounds)
+    others = near.difference(part.buffer(_CLEAR_M))
+    for middle, along in (((a + b) / 2, a - d), ((c + d) / 2, d - a)):
+        along = along / np.hypot(*along)
+        ahead = shapely.LineString([middle, middle + _GAP_M * along])
+        near_m = float(shapely.distance(others.intersection(ahead), shapely.Point(middle)))
+        if not np.isfinite(near_m):
+            continue
+        at = middle + (near_m + _CLEAR_M) * along
+        across = np.array([-along[1], along[0]]) * (width / 2 + 2 * _CLEAR_M)
+        if others.intersection(shapely.LineString([at - across, at + across])).length <= width * 1.2:
+            return True
+    return False
 
 
 def box_sides(polygon: BaseGeometry) -> tuple[float, float]:

@@ -29,6 +29,20 @@ def test_area_of_wall_becomes_centre_lines_with_the_measured_thickness(angle: fl
     assert sorted(round(wall.thickness_m, 3) for wall in walls) == [0.2, 0.2, 0.3, 0.3, 0.3, 0.3]
 
 
+@pytest.mark.parametrize("length_m", [0.79, 0.8, 0.81, 1.0])
+@pytest.mark.parametrize("angle", [0, 30, 90])
+def test_a_column_of_one_to_two_is_a_pillar_where_no_wall_goes_on(length_m, angle) -> None:
+    hall = box(0, 0, 12, 9) - box(0.3, 0.3, 11.7, 8.7)
+    column = box(6, 4, 6 + length_m, 4.4)
+    in_line = box(0.1, 4, 5, 4.4) | box(8, 4, 11.9, 4.4)
+    for walls, n_sides in ((hall, 4), (hall | in_line, 0)):
+        area = affinity.rotate(walls | column, angle, origin=(0, 0))
+        around = affinity.rotate(column.buffer(0.01), angle, origin=(0, 0))
+        found = [LineString([w.start, w.end]) for w in walls_of_area(area, 0.02)]
+        on = [line for line in found if around.covers(line)]
+        assert len(on) == n_sides or (n_sides == 0 and len(on) == 1)
+
+
 def test_a_pillar_is_a_ring_of_half_its_width() -> None:
     walls = walls_of_area(box(2, 2, 2.5, 2.6), 0.02)
     assert len(walls) == 4
