@@ -2,7 +2,8 @@
 
 Layers: WALL-MATERIAL holds the outlines of wall bodies, interrupted at openings, with the wall's
 height as their thickness; DOOR and WINDOW hold a block for each opening; AXIS the centre lines.
-Importing the drawing restores the walls and openings, but not the heights.
+Importing the drawing restores the walls and openings, source, start and transmitters' places, but
+not the heights of walls and openings.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ from shapely.geometry import LineString, Polygon
 
 from floorplans.georeference import GeoOrigin
 from floorplans.importers.known_pixels import KnownPixels
+from floorplans.importers.marks import Marks
 from floorplans.importers.original import Original
 from floorplans.materials import PlanMaterial
 from floorplans.walls import OpeningKind, Point
@@ -237,6 +238,8 @@ class Draft:
         Of a robot's map.
     original : Original or None
         What the file shows, in the coordinates of the walls.
+    marks : Marks
+        Places of source, start and transmitters, in the coordinates of the walls.
     unit_name, unit_m : str, float
         Unit of the file's coordinates, where those are the draft's, and its length [m].
     """
@@ -258,5 +261,6 @@ class Draft:
     closed: tuple[LineString, ...] = ()
     known: KnownPixels | None = None
     original: Original | None = None
+    marks: Marks = field(default_factory=Marks)
     unit_name: str = "m"
     unit_m: float = 1.0

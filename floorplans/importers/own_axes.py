@@ -81,6 +81,7 @@ def turned(draft: Draft, angle_deg: float) -> Draft:
             for opening in draft.openings
         ),
         outline=None if draft.outline is None else shapely.transform(draft.outline, frame.to_plan),
+        marks=draft.marks.moved(to),
         closed=tuple(shapely.transform(line, frame.to_plan) for line in draft.closed),
         known=None if draft.known is None else draft.known.moved(frame.to_plan),
         original=None if draft.original is None else draft.original.transformed(_affine(frame)),

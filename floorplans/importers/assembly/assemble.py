@@ -28,15 +28,18 @@ from floorplans.importers.defaults import (
 )
 from floorplans.importers.draft import Draft, ImportOptions
 from floorplans.importers.imported import Imported, ImportRecord
+from floorplans.importers.marks import Position
 from floorplans.importers.progress import Report, Step, no_report
 from floorplans.importers.tangle import check_crossings
 from floorplans.materials import MATERIALS, PlanMaterial
 from floorplans.plan import FloorPlan
 from floorplans.repair.geometry import Change, tidy_point
 from floorplans.repair.plan import repair_plan
+from floorplans.transmitters import PlanTransmitter
 from floorplans.unchecked import UncheckedPlan
 from floorplans.values import LENGTH, MAX_SIDE_M, MAX_WALLS, check_number
 from floorplans.walls import TOLERANCE_M, Wall
+from floorplans.walls import Point as Point2
 
 MUCH_OUTSIDE = 0.05
 """Fraction of the walls' length outside the outline from which on the user is warned."""
@@ -114,7 +117,12 @@ def _imported(record: ImportRecord, plan: UncheckedPlan, changes: tuple[Change, 
 def _record(
     draft: Draft, options: ImportOptions, building: Building, height_m: float, source_file: str
 ) -> ImportRecord:
-    places = _places(building, options, height_m)
+    marks = draft.marks
+    if draft.origin is None:
+        marks = marks.shifted(-building.origin.x, -building.origin.y)
+    marked = marks.inside(building.outline, height_m)
+    source, start = options.source or marked.source, options.start or marked.start
+    places = _places(building, source, start, height_m)
     plan = UncheckedPlan(
         name=options.name or draft.name,
         outline=building.outline,
@@ -122,10 +130,13 @@ def _record(
         height_m=height_m,
         floor_material=options.floor_material or draft.floor_material or SLAB_MATERIAL,
         ceiling_material=options.ceiling_material or draft.ceiling_material or SLAB_MATERIAL,
-        source=options.source or (*places.source, min(SOURCE_HEIGHT_M, height_m / 2)),
-        start=options.start or places.start,
+        source=source or (*places.source, min(SOURCE_HEIGHT_M, height_m / 2)),
+        start=start or places.start,
         origin=draft.georeference,
         materials=_used(draft, building.walls),
+        transmitters=tuple(
+            PlanTransmitter(f"tx{k}", place) for k, place in enumerate(marked.transmitters, 1)
+        ),
     )
     fit = fit_of(draft.known, building)
     original = draft.original
@@ -135,10 +146,10 @@ def _record(
         plan=plan,
         source_file=source_file,
         origin=building.origin,
-        assumed=tuple(assumptions(draft, options, plan, places)),
+        assumed=tuple(assumptions(draft, options, marked, plan, places)),
         layers=draft.layers,
         changes=building.changes,
-        notes=(*draft.notes, *fit.notes),
+        notes=(*draft.notes, *marks.missing_in(marked), *fit.notes),
         warnings=(*draft.warnings, *_losses(draft, building), *fit.warnings),
         original=original,
     )
@@ -211,8 +222,10 @@ def _used(draft: Draft, walls: Sequence[Wall]) -> tuple[PlanMaterial, ...]:
     return tuple(material for material in draft.materials if material.name in names)
 
 
-def _places(building: Building, options: ImportOptions, height_m: float) -> SourceAndStart:
-    source = options.source[:2] if options.source is not None else None
-    if options.source is not None and options.start is not None:
-        return SourceAndStart(options.source[:2], options.start, 0.0)
-    return choose_source_and_start(building.outline, building.walls, height_m, source)
+def _places(
+    building: Building, source: Position | None, start: Point2 | None, height_m: float
+) -> SourceAndStart:
+    if source is not None and start is not None:
+        return SourceAndStart(source[:2], start, 0.0)
+    place = None if source is None else source[:2]
+    return choose_source_and_start(building.outline, building.walls, height_m, place)

@@ -19,11 +19,16 @@ from floorplans.importers.defaults import (
     WINDOW_THICKNESS_M,
 )
 from floorplans.importers.draft import Assumption, Draft, ImportOptions
+from floorplans.importers.marks import Marks
 from floorplans.unchecked import UncheckedPlan
 
 
 def assumptions(
-    draft: Draft, options: ImportOptions, plan: UncheckedPlan, places: SourceAndStart
+    draft: Draft,
+    options: ImportOptions,
+    marked: Marks,
+    plan: UncheckedPlan,
+    places: SourceAndStart,
 ) -> Iterator[Assumption]:
     """What neither the file nor the user states, in the order of the plan file."""
     if options.height_m is None and draft.height_m is None:
@@ -31,11 +36,11 @@ def assumptions(
     for key in ("floor_material", "ceiling_material"):
         if getattr(options, key) is None and getattr(draft, key) is None:
             yield Assumption(key, getattr(plan, key), "the file names no material")
-    if options.source is None:
+    if (options.source or marked.source) is None:
         yield Assumption(
             "source", f"{list(plan.source or ())}", "the file states no source; away from walls"
         )
-    if options.start is None:
+    if (options.start or marked.start) is None:
         why = f"the cell with the longest walk from the source, {places.distance_m:.0f} m"
         yield Assumption("start", f"{list(plan.start or ())}", why)
     yield from draft.assumed

@@ -42,6 +42,7 @@ from floorplans.importers.dxf.glazing import (
     loose_openings,
 )
 from floorplans.importers.dxf.layers import Layers, damaged_objects, layers_of, missing_blocks
+from floorplans.importers.dxf.marks import marks_of, with_marks
 from floorplans.importers.dxf.openings import (
     as_windows_outside,
     door_swings,
@@ -115,11 +116,12 @@ def read_dxf(path: Path, options: ImportOptions, report: Report = no_report) -> 
     metric = _with_doors_of_swings(_in_metres(content, UNITS[unit]), layers)
     metric, floors = without_floors(metric, layers)
     walls, openings = _building(metric, layers, report)
+    marks = marks_of(document, UNITS[unit])
     return Draft(
         name=path.stem,
         walls=tuple(walls),
         openings=tuple(openings),
-        layers=layers.uses(),
+        layers=with_marks(layers.uses(), marks),
         notes=(
             f"unit {unit}, as {stated_by}",
             *filter(None, (missing_blocks(content), damaged_objects(content, layers))),
@@ -127,6 +129,7 @@ def read_dxf(path: Path, options: ImportOptions, report: Report = no_report) -> 
             *unmatched(options.layers, content.n_objects),
         ),
         original=layers.original(metric),
+        marks=marks,
         unit_name=unit,
         unit_m=UNITS[unit],
     )

@@ -10,7 +10,9 @@ from small_plans import ROOM, box
 import floorplans
 from floorplans import FloorPlan, Opening, Wall
 from floorplans.exporters import export
+from floorplans.frame import PlanFrame
 from floorplans.importers import ImportOptions, import_plan
+from floorplans.transmitters import PlanTransmitter
 
 
 def reimported(plan: FloorPlan, tmp_path) -> FloorPlan:
@@ -112,3 +114,37 @@ def test_no_layer_of_a_drawing_is_unknown_when_it_is_imported(tmp_path) -> None:
     layers = import_plan(tmp_path / "flat.dxf").layers
     assert {"SOURCE", "START", "AXIS"} <= {layer.name for layer in layers}
     assert not [layer.name for layer in layers if layer.is_unknown]
+
+
+@pytest.mark.parametrize(
+    "frame", [None, PlanFrame(512.25, -80.5, 0.0), PlanFrame(-3.5, 40.25, 11.0)]
+)
+def test_source_start_and_transmitters_come_back_to_their_places(frame, tmp_path) -> None:
+    radios = tuple(PlanTransmitter(f"tx{k}", (3.0 * k, 1.6, 2.25)) for k in (1, 2))
+    plan = replace(floorplans.load("flat"), transmitters=radios, frame=frame)
+    (path,) = export(plan, tmp_path / "plan.dxf")
+    result = import_plan(path, ImportOptions(height_m=plan.height_m))
+    again = result.plan
+    assert again.source == pytest.approx(plan.source, abs=1e-3)
+    assert again.start == pytest.approx(plan.start, abs=1e-3)
+    assert [t.id for t in again.transmitters] == ["tx1", "tx2"]
+    for radio, back in zip(radios, again.transmitters, strict=True):
+        assert back.position == pytest.approx(radio.position, abs=1e-3)
+    assert not {"source", "start"} & {a.key for a in result.assumed}
+    assert FloorPlan.of(floorplans.loads(result.toml())) == again
+
+
+def test_a_source_on_the_ground_and_points_in_drawings_of_others_are_no_source(tmp_path) -> None:
+    (path,) = export(floorplans.load("flat"), tmp_path / "plan.dxf")
+    document = ezdxf.readfile(path)
+    (point,) = document.modelspace().query('POINT[layer=="SOURCE"]')
+    point.dxf.location = (-5.0, 2.0, 1.5)
+    document.saveas(tmp_path / "outside.dxf")
+    outside = import_plan(tmp_path / "outside.dxf")
+    assert "source" in {a.key for a in outside.assumed}
+    assert any("the source of the drawing" in note for note in outside.notes)
+    document.layers.remove("TRANSMITTER")
+    point.dxf.location = (2.2, 2.2, 1.5)
+    document.saveas(tmp_path / "others.dxf")
+    others = import_plan(tmp_path / "others.dxf")
+    assert {"source", "start"} <= {a.key for a in others.assumed}
