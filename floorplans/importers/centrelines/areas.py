@@ -150,7 +150,8 @@ def _goes_on(part: Polygon, whole: BaseGeometry, width: float) -> bool:
             continue
         at = middle + (near_m + _CLEAR_M) * along
         across = np.array([-along[1], along[0]]) * (width / 2 + 2 * _CLEAR_M)
-        if others.intersection(shapely.LineString([at - across, at + across])).length <= width * 1.2:
+        section = shapely.LineString([at - across, at + across])
+        if others.intersection(section).length < width + 2 * _CLEAR_M:
             return True
     return False
 

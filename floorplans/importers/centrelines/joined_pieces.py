@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from math import cos, radians
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 _TOUCH_M = 0.002
 """Ends as near are one [m]."""
@@ -53,9 +53,10 @@ def _mates(segments: Segments) -> NDArray[np.int64]:
     steps = np.repeat(segments[:, 1] - segments[:, 0], 2, axis=0)
     inward = steps / np.hypot(steps[:, 0], steps[:, 1])[:, None]
     inward[1::2] *= -1
-    i, j = cKDTree(ends).query_pairs(_TOUCH_M, output_type="ndarray").T
+    points = shapely.points(ends)
+    i, j = shapely.STRtree(points).query(points, predicate="dwithin", distance=_TOUCH_M)
     on = (np.sum(inward[i] * inward[j], axis=1) < -_STRAIGHT) & (i // 2 != j // 2)
-    i, j = np.concatenate([i[on], j[on]]), np.concatenate([j[on], i[on]])
+    i, j = i[on], j[on]
     single = np.bincount(i, minlength=len(ends)) == 1
     kept = single[i] & single[j]
     mate = np.full(len(ends), -1, dtype=np.int64)

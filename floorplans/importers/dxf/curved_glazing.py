@@ -76,19 +76,20 @@ def along_curve(lines: Sequence[LineString]) -> Iterator[RawOpening]:
 
 def _middle_lines(lines: Sequence[LineString]) -> list[LineString]:
     """One of each set of lines beside each other, of middle length, without jambs and caps."""
-    left = [line for line in lines if line.length > _JAMB_M]
+    left = sorted((line for line in lines if line.length > _JAMB_M), key=_length_m)
     middle: list[LineString] = []
     while left:
-        longest = max(left, key=lambda line: line.length)
+        longest = left[-1]
         band = longest.buffer(PAIR_M, cap_style="flat").buffer(IN_WALL_M)
         beside = [line for line in left if line.intersection(band).length > line.length / 2]
-        long = sorted(
-            (line for line in beside if line.length > longest.length / 2),
-            key=lambda line: line.length,
-        )
+        long = [line for line in beside if line.length > longest.length / 2]
         middle.append(long[len(long) // 2])
         left = [line for line in left if line not in beside]
     return middle
+
+
+def _length_m(line: LineString) -> float:
+    return float(line.length)
 
 
 def without_caps(lines: Sequence[LineString]) -> list[LineString]:

@@ -42,6 +42,7 @@ from floorplans.importers.dxf.glazing import (
     loose_openings,
 )
 from floorplans.importers.dxf.layers import Layers, damaged_objects, layers_of, missing_blocks
+from floorplans.importers.dxf.loose_singles import without_loose_singles
 from floorplans.importers.dxf.marks import marks_of, with_marks
 from floorplans.importers.dxf.openings import (
     as_windows_outside,
@@ -115,7 +116,13 @@ def read_dxf(path: Path, options: ImportOptions, report: Report = no_report) -> 
     check_size(_size(content, layers), unit, stated_by)
     metric = _with_doors_of_swings(_in_metres(content, UNITS[unit]), layers)
     metric, floors = without_floors(metric, layers)
-    walls, openings = _building(metric, layers, report)
+    bodies = _bodies(metric, layers)
+    loose = ""
+    if any(map(layers.is_guess, layers.of("wall"))):
+        singles, loose = without_loose_singles(bodies.singles, _merged([*bodies.area.values()]))
+        bodies = replace(bodies, singles=singles)
+    report(Step.FACES_PAIRED)
+    walls, openings = _building(metric, layers, bodies)
     marks = marks_of(document, UNITS[unit])
     return Draft(
         name=path.stem,
@@ -124,7 +131,7 @@ def read_dxf(path: Path, options: ImportOptions, report: Report = no_report) -> 
         layers=with_marks(layers.uses(), marks),
         notes=(
             f"unit {unit}, as {stated_by}",
-            *filter(None, (missing_blocks(content), damaged_objects(content, layers))),
+            *filter(None, (missing_blocks(content), damaged_objects(content, layers), loose)),
             *floors,
             *unmatched(options.layers, content.n_objects),
         ),
@@ -189,11 +196,9 @@ def _with_doors_of_swings(content: Content, layers: Layers) -> Content:
 
 
 def _building(
-    content: Content, layers: Layers, report: Report
+    content: Content, layers: Layers, bodies: _Bodies
 ) -> tuple[list[RawWall], list[RawOpening]]:
     """Walls and openings of a drawing in metres."""
-    bodies = _bodies(content, layers)
-    report(Step.FACES_PAIRED)
     area = _merged(list(bodies.area.values()))
     openings = _drawn_openings(content, layers, area, bodies.singles)
     openings = join_leaves(along_walls(openings, _faces(content, layers)))

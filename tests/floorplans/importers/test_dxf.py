@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from contextlib import suppress
+from itertools import pairwise
 from math import atan, cos, pi, radians, sin
 from pathlib import Path
 
@@ -88,7 +89,7 @@ def test_faces_in_pieces_are_whole_faces(piece_mm: float, tmp_path: Path):
         start, step = line.dxf.start, line.dxf.end - line.dxf.start
         n = max(round(step.magnitude / piece_mm), 1)
         points = [start + step * (k / n) for k in range(n + 1)]
-        for a, b in zip(points, points[1:], strict=False):
+        for a, b in pairwise(points):
             ends = [(round(p.x), round(p.y)) for p in (b, a)]
             space.add_line(*ends, dxfattribs={"layer": line.dxf.layer})
         space.delete_entity(line)
@@ -427,6 +428,20 @@ def test_layers_of_unknown_names_are_walls_where_no_other_is(tmp_path: Path):
     assert [use.became for use in result.layers if use.name == "0"] == [
         "walls (no layer is named like walls)"
     ]
+
+
+@pytest.mark.parametrize(("layers", "depth_m"), [({}, 5.7), ({"0": "wall"}, 7.5)])
+def test_dimension_lines_on_the_only_layer_are_no_walls(
+    layers: dict[str, str], depth_m: float, tmp_path: Path
+):
+    doc = draw.new()
+    space = doc.modelspace()
+    for ring in (draw.OUTER, draw.INNER):
+        draw.add_rings(space, [ring], "0")
+    draw.add_lines(space, [((0, -1.5), (8, -1.5)), ((8, -1.6), (8, -1.4))], "0")
+    result = imported(doc, tmp_path, layers=layers)
+    assert result.plan.bounds[3] == pytest.approx(depth_m, abs=0.3)
+    assert any("touch no wall" in line for line in result.report) == (not layers)
 
 
 def test_a_door_on_the_only_layer_is_a_door_and_not_an_arc_of_wall(tmp_path: Path):
