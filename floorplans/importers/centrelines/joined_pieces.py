@@ -53,7 +53,7 @@ def _mates(segments: Segments) -> NDArray[np.int64]:
     steps = np.repeat(segments[:, 1] - segments[:, 0], 2, axis=0)
     inward = steps / np.hypot(steps[:, 0], steps[:, 1])[:, None]
     inward[1::2] *= -1
-    points = shapely.points(ends)
+    points = np.array(shapely.points(ends), dtype=np.object_)
     i, j = shapely.STRtree(points).query(points, predicate="dwithin", distance=_TOUCH_M)
     on = (np.sum(inward[i] * inward[j], axis=1) < -_STRAIGHT) & (i // 2 != j // 2)
     i, j = i[on], j[on]
