@@ -1,12 +1,13 @@
 """What the engines of data sets cost besides tracing, and how they scale.
 
-``python tests/benchmarks/datasets.py`` makes a data set of 100 maps of about 0.1 s, and prints a
-table: processor time of tracing alone, of the command's work in one process, and of a local Dask
-cluster of one and of two processes, each with the wall time.
+``python tests/benchmarks/datasets.py`` makes a data set of 100 maps of about 0.1 s, or of more with
+``--plans``, and prints a table: processor time of tracing alone, of the command's work in one
+process, and of a local Dask cluster of one and of two processes, each with the wall time.
 """
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 import tempfile
@@ -29,7 +30,7 @@ SPEC = """
 name = "benchmark"
 [[plans]]
 kind = "office"
-seeds = 10
+seeds = {plans}
 area_m2 = 300
 [transmitters]
 count = 10
@@ -57,8 +58,12 @@ def measured(work: Callable[[], object]) -> tuple[float, float]:
 
 def main() -> None:
     """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--plans", type=int, default=10, help="of ten maps each")
+    plans = parser.parse_args().plans
     warnings.simplefilter("ignore")
-    spec = spec_of(SPEC)
+    text = SPEC.format(plans=plans)
+    spec = spec_of(text)
     configuration = spec.configuration
     warm_kernels(configuration)
 
@@ -76,8 +81,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as base:
         for name, engine in engines.items():
             folder = Path(base) / name
-            rows.append((name, *measured(lambda f=folder, e=engine: made(f, SPEC, engine=e))))
-    print("| 100 maps | processor time [s] | wall time [s] |\n| --- | ---: | ---: |")
+            rows.append((name, *measured(lambda f=folder, e=engine: made(f, text, engine=e))))
+    print(f"| {10 * plans} maps | processor time [s] | wall time [s] |\n| --- | ---: | ---: |")
     for name, processor_s, wall_s in rows:
         print(f"| {name} | {processor_s:.1f} | {wall_s:.1f} |")
 
