@@ -251,6 +251,13 @@ class Client:
                 return model_id
         return ""
 
+    @property
+    def plan_figure(self) -> str:
+        """Id of the figure of plan and map."""
+        found = self.find("Figure", "match_aspect", True)
+        assert found, "the page has no figure of the plan"
+        return found
+
     def input(self, label: str) -> str:
         """Id of the input with a label; empty if there is none."""
         return self.find("", "title", label) or self.find("", "label", label)

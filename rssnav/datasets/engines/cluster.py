@@ -13,7 +13,7 @@ import time
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -105,8 +105,9 @@ class Cluster:
 
     def _result(self, client: Any, job: Job, source: PlanSource, future: Any) -> Summary:
         """Return the summary of a task; a lost one is that of a plan, or of the cluster."""
-        if future.status == "finished":
-            return future.result()
+        with suppress(_cancelled()):  # the scheduler may be lost at any moment
+            if future.status == "finished":
+                return future.result()
         if future.status == "error":
             error = future.exception()
             if isinstance(error, DatasetError | OSError):
@@ -136,6 +137,13 @@ class Cluster:
             f"the Dask scheduler {where}is gone; finished plans are saved: run the same command "
             "again to resume"
         )
+
+
+def _cancelled() -> type[BaseException]:
+    """Return the error of a task whose result the scheduler no longer has."""
+    from distributed.client import FutureCancelledError
+
+    return FutureCancelledError
 
 
 def on_worker(

@@ -111,7 +111,7 @@ def test_unknown_options_of_a_select_change_nothing(tab) -> None:
 
 
 def test_taps_and_drags_to_nowhere_change_nothing(tab) -> None:
-    plot = tab.find("Figure", "min_height", 280)
+    plot = tab.plan_figure
     for value in (HUGE, NOT_A_NUMBER, INFINITE, "x", None, [], 1e300):
         for name in ("panstart", "pan", "panend", "tap"):
             tab.event(name, {"model": {"id": plot}, "x": value, "y": value, "sx": 1, "sy": 1})
@@ -149,7 +149,7 @@ def test_thousands_of_events_leave_other_tabs_their_turn(server, tab, make) -> N
     attacker = make().open().wait_for_map()
     threads, memory_bytes = server.n_threads, server.memory_bytes
     train, keys = attacker.find("Button", "label", "Train"), attacker.find("", "name", "keys")
-    plot = attacker.find("Figure", "min_height", 280)
+    plot = attacker.plan_figure
     for number in range(10):
         attacker.send("PATCH-DOC", clicks(train, 100))
         for k in range(50):
@@ -165,7 +165,7 @@ def test_thousands_of_events_leave_other_tabs_their_turn(server, tab, make) -> N
 def test_a_click_right_after_a_change_finds_the_page_locked(server, make) -> None:
     """As of somebody who is quick; the log has no change that failed."""
     quick = make().open().wait_for_map()
-    plot = quick.find("Figure", "min_height", 280)
+    plot = quick.plan_figure
     tabs = next(k for k, m in quick.models.items() if m.get("type", "").endswith("Tabs"))
     quick.event("tap", {"model": {"id": plot}, "x": 6.5, "y": 4.5, "sx": 1, "sy": 1})
     quick.until(lambda: "(6.5, 4.5, 2) m" in quick.texts)
