@@ -158,7 +158,7 @@ def test_thousands_of_events_leave_other_tabs_their_turn(server, tab, make) -> N
             steps = [["right", [k % 3 - 1]], ["up", [1]], ["count", [k]]]
             attacker.change(keys, "data", {"type": "map", "entries": steps})
         tab.still_works()
-    assert server.n_threads < threads + 10
+    assert server.n_threads < threads + 50  # of 1 500 events
     assert server.memory_bytes < memory_bytes + 100_000_000
 
 
@@ -271,7 +271,7 @@ def test_a_slow_browser_finds_its_page(server, make) -> None:
     assert "https:" not in json.dumps(slow.models, default=str)  # no style sheet from elsewhere
 
 
-WHOLE_TRACE_S = 10.0
+WHOLE_TRACE_S = 40.0
 """Processor time at least of the trace that a tab leaves behind."""
 
 
@@ -279,7 +279,7 @@ def test_work_ends_with_its_tab(server, make) -> None:
     attacker = make().open().wait_for_map()
     attacker.change(attacker.input("Floor plan"), "value", "scenario2")
     attacker.change(attacker.input("Reflections"), "value", 8)
-    attacker.change(attacker.input("Cell size [m]"), "value", 0.5)
+    attacker.change(attacker.input("Cell size [m]"), "value", 0.25)
     attacker.receive(1.0)
     attacker.close()
     closed_s = server.processor_s
