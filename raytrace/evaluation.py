@@ -218,9 +218,6 @@ def trace_points(
         Where the transmitter is not inside the building.
     TraceStoppedError, MemoryLimitError
         As for `compute_radio_map`.
-
-    Raises
-    ------
     ValueError
         For points of another shape, and a fraction that is not from 0 to below 1.
     """

@@ -24,6 +24,9 @@ decimals, and walls that leave the outline by no more, are read as they were mea
 OPEN = -1
 """Material of a height interval without a wall."""
 
+SAME_M2 = 1e-6
+"""Areas that differ by less are the same [m2]."""
+
 
 class Profile(NamedTuple):
     """The materials of a wall over its height, from the floor to the ceiling.
@@ -117,7 +120,7 @@ def read_sheets(mesh: trimesh.Trimesh, face_material: Ints) -> Sheets:
     footprint, floor = _floor_or_ceiling(triangles, face_material, horizontal, floor_z, "floor")
     roof, ceiling = _floor_or_ceiling(triangles, face_material, horizontal, ceiling_z, "ceiling")
     _refuse_partial_slabs(triangles, horizontal, (floor_z, ceiling_z), np.flatnonzero(real))
-    if footprint.symmetric_difference(roof).area > 1e-6:
+    if footprint.symmetric_difference(roof).area > SAME_M2:
         raise SceneError("floor and ceiling do not cover the same ground: not an extruded plan")
     walls = triangles[vertical] - np.array([0.0, 0.0, floor_z])
     height = float(ceiling_z - floor_z)
@@ -227,9 +230,9 @@ def _fill(triangles: Floats, materials: Ints, s: Floats, z: Floats, corners: Flo
         within, _ = shapely.STRtree(sheet).query(centres, "intersects")
         inside = np.bincount(within, minlength=grid_s.size).reshape(grid_s.shape) > 0
         covered = float(np.sum(shapely.area(sheet)))
-        if abs(cell_area[inside].sum() - covered) > _SAME_M2:  # triangles may overlap
+        if abs(cell_area[inside].sum() - covered) > SAME_M2:  # triangles may overlap
             covered = shapely.union_all(sheet).area
-        if abs(cell_area[inside].sum() - covered) > _SAME_M2:
+        if abs(cell_area[inside].sum() - covered) > SAME_M2:
             (x1, y1), (x2, y2) = corners[0], corners[-1]
             raise SceneError(
                 f"the wall from ({x1:g}, {y1:g}) to ({x2:g}, {y2:g}) is not made of vertical "
@@ -252,7 +255,3 @@ def _distinct(values: Floats, apart: float) -> tuple[Floats, Ints, Ints]:
     number = np.empty(len(values), dtype=np.int64)
     number[order] = np.cumsum(new) - 1
     return values[order][new], order[new], number
-
-
-_SAME_M2 = 1e-6
-"""Areas that differ by less are the same [m2]."""
