@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import hypot, radians, sin
+from math import cos, hypot, radians, sin
 
 from shapely.geometry import LineString, Polygon
 
@@ -23,6 +23,8 @@ from floorplans.walls import OpeningKind, Point
 _MAX_SINE = sin(radians(20.0))
 """Sine of the largest angle between an opening and its wall."""
 
+CURVE_COSINE = cos(radians(40.0))
+"""Cosine of the largest bend between two chords of a curve."""
 
 Box = tuple[float, float, float, float]
 """(x_min, y_min, x_max, y_max)."""

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from math import cos, dist, hypot, radians
+from math import dist, hypot
 
 import shapely
 
-from floorplans.importers.draft import RawOpening
+from floorplans.importers.draft import CURVE_COSINE, RawOpening
 from floorplans.repair.geometry import direction, tidy_point
 from floorplans.walls import TOLERANCE_M, Point, Wall, centre_lines
 
 _SAME_END_M = 0.01
-_MIN_COSINE = cos(radians(40.0))
-"""Cosine of the largest bend between two chords of a curve."""
 _MIN_ALONG = 0.3
 """Least cosine between a chord and its opening."""
 _MIN_PART_M = 0.01
@@ -85,7 +83,7 @@ def _continues(wall: Wall, other: Wall, end: Point, u: Point) -> bool:
     here = wall.start if end == wall.end else wall.end
     before = _unit((end[0] - here[0], end[1] - here[1]))
     after = _unit((far[0][0] - end[0], far[0][1] - end[1]))
-    return _dot(before, after) >= _MIN_COSINE and abs(_dot(after, u)) >= _MIN_ALONG
+    return _dot(before, after) >= CURVE_COSINE and abs(_dot(after, u)) >= _MIN_ALONG
 
 
 def _is_within(s: float, span: tuple[float, float]) -> bool:

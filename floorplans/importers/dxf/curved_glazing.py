@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from math import cos, radians, sin
+from math import radians, sin
 
 import numpy as np
 import shapely
@@ -14,15 +14,13 @@ from shapely.geometry.base import BaseGeometry
 
 from floorplans.importers.centrelines.areas import box_sides
 from floorplans.importers.centrelines.sections import linestrings
-from floorplans.importers.draft import RawOpening
+from floorplans.importers.draft import CURVE_COSINE, RawOpening
 from floorplans.walls import TOLERANCE_M
 
 PAIR_M = 0.6
 """Largest distance between the two lines of a wall [m]."""
 IN_WALL_M = 0.05
 """Lines as near to a wall lie in it [m]."""
-_SMOOTH = cos(radians(40.0))
-"""Cosine of the largest bend between two chords of a curve."""
 _BENT_M = 0.15
 """A line that leaves its chord farther is no straight window [m]."""
 _PARALLEL = sin(radians(6.0))
@@ -40,7 +38,7 @@ def smooth_pieces(line: LineString) -> list[LineString]:
     points = shapely.get_coordinates(shapely.remove_repeated_points(line))
     steps = np.diff(points, axis=0)
     along = steps / np.hypot(steps[:, 0], steps[:, 1])[:, None]
-    corners = 1 + np.flatnonzero(np.sum(along[:-1] * along[1:], axis=1) < _SMOOTH)
+    corners = 1 + np.flatnonzero(np.sum(along[:-1] * along[1:], axis=1) < CURVE_COSINE)
     stops = [0, *corners.tolist(), len(points) - 1]
     return [LineString(points[low : high + 1]) for low, high in pairwise(stops)]
 
