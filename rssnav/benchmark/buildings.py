@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 import floorplans
@@ -23,7 +22,12 @@ from rssnav.maps import CELL_SIZE_M, HEIGHT_M
 from rssnav.missions import Layout, Mission, ReadingAbove, Task, spread_places
 from rssnav.missions.doors import detour_doors, mission_of_doors
 from rssnav.missions.layout import WorldError
-from rssnav.missions.places import fields_of_places, mission_of_fields, reachable_layout
+from rssnav.missions.places import (
+    are_in_sight,
+    fields_of_places,
+    mission_of_fields,
+    reachable_layout,
+)
 from rssnav.policies import Hypotheses
 from rssnav.policies.hypotheses import COARSE, NO_WAY
 from rssnav.presets import PRESETS, PresetName
@@ -271,13 +275,13 @@ def _draw_places(
     plan: FloorPlan, layout: Layout, generator: np.random.Generator
 ) -> tuple[tuple[float, float, float], ...]:
     """Draw places of transmitters, each in sight of the centre of its cell."""
-    walls = shapely.multilinestrings(plan.solid_segments(_HEIGHT_M))
     places: list[tuple[float, float, float]] = []
     for cell in generator.permutation(layout.n_states):
         offset = generator.uniform(-_BESIDE_M, _BESIDE_M, 2)
-        way = np.stack((layout.position[cell], layout.position[cell] + offset))
-        if not shapely.intersects(shapely.linestrings(way), walls):
-            places.append((float(way[1, 0]), float(way[1, 1]), _HEIGHT_M))
+        centre = layout.position[[cell]]
+        if are_in_sight(plan, centre, centre + offset, _HEIGHT_M)[0]:
+            x, y = (centre[0] + offset).tolist()
+            places.append((x, y, _HEIGHT_M))
         if len(places) == PLACES:
             break
     return tuple(places)

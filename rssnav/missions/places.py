@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from floorplans import FloorPlan
@@ -18,7 +19,9 @@ from rssnav.missions.modes import ModeProcess
 from rssnav.progress import Progress
 from rssnav.transmitter_maps import make_transmitter_maps
 
-_BESIDE_M = np.array([0.2, 0.15])  # from a cell's centre, where 1 / D would be infinite
+_BESIDE_M = (0.2, 0.15)  # from a cell's centre, where 1 / D would be infinite
+_TURNS = np.array([(1, 1), (-1, 1), (1, -1), (-1, -1)])
+_SHARES = (1.0, 0.5, 0.25, 0.1)
 
 
 def reachable_layout(plan: FloorPlan, speed: int = 1, cell_size_m: float = CELL_SIZE_M) -> Layout:
@@ -36,6 +39,44 @@ def reachable_layout(plan: FloorPlan, speed: int = 1, cell_size_m: float = CELL_
     if kept.size < 2:
         raise WorldError(f"plan {plan.name!r}: at speed {speed} the start cannot be left")
     return whole.part(kept)
+
+
+def are_in_sight(
+    plan: FloorPlan, one: NDArray[np.float64], other: NDArray[np.float64], height_m: float
+) -> NDArray[np.bool_]:
+    """Whether the straight ways (n,) between points (n, 2) [m] stay in the building, off walls."""
+    walls = shapely.multilinestrings(plan.solid_segments(height_m))
+    ways = shapely.linestrings(np.stack([one, other], axis=1))
+    inside: NDArray[np.bool_] = shapely.covers(plan.outline, ways)
+    return inside & ~shapely.intersects(ways, walls)
+
+
+def places_beside(
+    plan: FloorPlan, centres: NDArray[np.float64], offset_m: tuple[float, float], height_m: float
+) -> NDArray[np.float64]:
+    """Places (n, 2) [m] beside the centres (n, 2) of cells, where transmitters can be.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        Walls and outline; each place is in sight of its centre.
+    centres : (n, 2) float64
+        [m]
+    offset_m : (float, float)
+        From each centre, along both axes; where a wall is in the way, to the other side along one
+        or both of them, or less far.
+    height_m : float
+        Of the places.
+    """
+    offsets = np.concatenate([share * _TURNS * offset_m for share in _SHARES])
+    places = centres + offsets[0]
+    hidden = np.flatnonzero(~are_in_sight(plan, centres, places, height_m))
+    for offset in offsets[1:]:
+        nearby = centres[hidden] + offset
+        seen = are_in_sight(plan, centres[hidden], nearby, height_m)
+        places[hidden[seen]] = nearby[seen]
+        hidden = hidden[~seen]
+    return places
 
 
 def spread_places(
@@ -62,7 +103,7 @@ def spread_places(
     require(n >= 1, "n", n, "at least 1")
     layout = reachable_layout(plan, speed)
     x, y, z = plan.require_source()
-    candidates = layout.position + _BESIDE_M
+    candidates = places_beside(plan, layout.position, _BESIDE_M, z)
     places = [(x, y, z)]
     nearest = np.hypot(*(candidates - (x, y)).T)
     nearest[np.hypot(*(candidates - plan.require_start()).T) < 4.0] = -1.0

@@ -13,7 +13,7 @@ from floorplans import FloorPlan
 from raytrace import Antenna, Isotropic, TraceConfig
 from rssnav.missions.layout import Layout
 from rssnav.missions.mission import Mission
-from rssnav.missions.places import fields_of_places
+from rssnav.missions.places import fields_of_places, places_beside
 from rssnav.missions.task import Task
 from rssnav.progress import Progress
 
@@ -128,7 +128,8 @@ class Hypotheses:
         threads, progress
             As for `rssnav.maps.make_map`.
         """
-        position = layout.position[_dominating(layout)] + _BESIDE_M
+        centres = layout.position[_dominating(layout)]
+        position = places_beside(plan, centres, _BESIDE_M, height_m)
         fields_dbm = fields_of_places(
             plan,
             layout,

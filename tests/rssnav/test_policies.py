@@ -21,7 +21,7 @@ from rssnav.missions import (
     fly,
     plan_mission,
 )
-from rssnav.missions.places import reachable_layout
+from rssnav.missions.places import are_in_sight, places_beside, reachable_layout
 from rssnav.policies import (
     DistanceSearch,
     FrontierSearch,
@@ -293,6 +293,40 @@ def test_hypotheses_of_a_plan_are_at_most_a_step_from_every_cell_and_where_they_
     assert covered.all()
     assert maps.found[nearest, np.arange(nearest.size)].all()
     assert maps.hops.max() < NO_WAY
+
+
+@pytest.mark.parametrize("width_m", [6.51, 6.6, 6.99])
+def test_places_of_hypotheses_are_inside_where_a_wall_is_beside_a_cells_centre(width_m):
+    corners = [[0, 0], [width_m, 0], [width_m, 4.55], [0, 4.55], [0, 0]]
+    plan = floorplans.loads(f"""
+        name = "narrow"
+        format = 1
+        height_m = 2.5
+        floor_material = "concrete"
+        ceiling_material = "concrete"
+        outline = {corners}
+        start = [1.5, 1.5]
+        [[walls]]
+        points = {corners}
+        material = "brick"
+        thickness_m = 0.2
+    """)
+    layout = reachable_layout(plan)
+    maps = Hypotheses.of_plan(plan, layout, config=TraceConfig(0, 0, 0))
+    assert (maps.position > 0.0).all()
+    assert (maps.position < (width_m, 4.55)).all()
+    nearest = [layout.nearest(*place) for place in maps.position]
+    assert maps.position == pytest.approx(layout.position[nearest], abs=0.15)
+    assert np.isfinite(maps.rss_dbm).all()
+
+
+def test_places_beside_a_cell_are_not_behind_a_wall():
+    plan = floorplans.load("scenario1")
+    wall = plan.solid_segments(1.2)[5]
+    along = (wall[1] - wall[0]) / np.hypot(*(wall[1] - wall[0]))
+    beside = wall.mean(axis=0) + 0.05 * np.array([-along[1], along[0]])
+    (place,) = places_beside(plan, beside[None], (0.2, 0.15), 1.2)
+    assert are_in_sight(plan, beside[None], place[None], 1.2)
 
 
 @pytest.mark.parametrize("make", [MapSearch, Qmdp, Infotaxis])
