@@ -47,8 +47,9 @@ GOAL = ReadingAbove(-21.0)
 DOORS = 3
 """Doors of a building that open and close, at most."""
 
-LEAST_STEPS = 10
-"""Flights begin at least so many steps from where any of the transmitters is found."""
+LEAST_STEPS, FEWEST_STEPS = 10, 5
+"""Flights begin at least so many steps from where any of the transmitters is found; where no cell
+is as far from all of them, in the cells that are farthest, but not nearer than the second."""
 
 _KINDS = ("office", "hotel", "school")
 _AREA_M2 = (300.0, 700.0)
@@ -148,13 +149,14 @@ class Building:
         path = None if folder is None else folder / f"{self.name}.h5"
         mission = self._everywhere(path)
         hops = Hypotheses.of_mission(mission, Task(GOAL)).hops
-        far = np.flatnonzero(hops.min(axis=1) >= LEAST_STEPS)
-        if hops.max() >= NO_WAY or not far.size:
+        nearest = hops.min(axis=1)
+        if hops.max() >= NO_WAY or nearest.max() < FEWEST_STEPS:
             raise WorldError(
                 f"building {self.name}: from no cell each transmitter is found, and in "
-                f"{LEAST_STEPS} steps at least; a larger building is needed"
+                f"{FEWEST_STEPS} steps at least; a larger building is needed"
             )
-        return mission.from_starts(far)
+        far = nearest >= min(LEAST_STEPS, int(nearest.max()))
+        return mission.from_starts(np.flatnonzero(far))
 
     def _everywhere(self, path: Path | None) -> Mission:
         """Mission of flights that begin in any cell."""
