@@ -13,6 +13,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
+from functools import cache
 from hashlib import sha256
 from itertools import chain
 from pathlib import Path
@@ -38,6 +39,12 @@ from rssnav.policies import Hypotheses
 
 _WARMING_S = 3
 """Seconds of a flight before the first, in which compiled kernels are loaded; it is not timed."""
+
+_FLIGHT_CODE = (
+    *(f"benchmark/{module}.py" for module in ("buildings", "policies", "protocol", "running")),
+    *(f"{package}/*.py" for package in ("kernels", "missions", "policies")),
+)
+"""Modules of rssnav that decide how flights go."""
 
 Show = Callable[[str, int, int], None]
 
@@ -195,6 +202,7 @@ def fly_in(
         key = {
             "version": BENCHMARK_VERSION,
             "tracer": TRACER_VERSION,
+            "program": _program(),
             "building": building.fingerprint,
             "seeds": extent.seeds,
             "policy": [spec.name, spec.track, spec.source],
@@ -210,6 +218,14 @@ def fly_in(
                 temporary.write_text(json.dumps({**key, "sha256": _hash(rows), "records": rows}))
         records += flown
     return records
+
+
+@cache
+def _program() -> str:
+    """Hash of the code that flights depend on beside the tracer: others are not resumed."""
+    package = Path(__file__).parents[1]
+    files = (file for part in _FLIGHT_CODE for file in sorted(package.glob(part)))
+    return sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
 class _Worlds:

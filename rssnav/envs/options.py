@@ -6,10 +6,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal
 
+import numpy as np
+
 import floorplans
 from floorplans import FloorPlan
 from rssnav.arguments import require
 from rssnav.discrete_states import AGENT_SENSITIVITY_DBM, Fluctuation, IntervalStates
+from rssnav.doors import shut_doors, with_changed
 from rssnav.maps import make_map
 from rssnav.missions import (
     Mission,
@@ -20,8 +23,10 @@ from rssnav.missions import (
     Task,
     Within,
 )
-from rssnav.missions.places import mission_of_places, spread_places
-from rssnav.presets import PRESETS, default_preset
+from rssnav.missions.doors import MOST_DOORS, detour_doors, mission_of_doors
+from rssnav.missions.layout import WorldError
+from rssnav.missions.places import mission_of_places, reachable_layout, spread_places
+from rssnav.presets import PRESETS, Preset, default_preset
 from rssnav.world import GridWorld
 
 ObservationKind = Literal["rss", "history", "cell", "dict"]
@@ -70,6 +75,13 @@ class EnvOptions:
         Places of the transmitter; the plan's own is the first, the others are spread over it.
     jump_probability : float
         Probability that it moves to another place, per second.
+    doors : int
+        Most doors that open and close: of the plan's open ones those whose closing lengthens the
+        ways to the places most and cuts no cell off (`rssnav.missions.detour_doors`). A generated
+        office then has doors between its rooms, too.
+    closed_probability, toggle_probability : float
+        Probability that a door is closed when an episode begins, and that it opens or closes, per
+        second.
     hover : bool
         Whether a ninth action stays in the cell for one more reading.
     """
@@ -94,12 +106,19 @@ class EnvOptions:
     sensitivity_dbm: float = AGENT_SENSITIVITY_DBM
     places: int = 1
     jump_probability: float = 0.0
+    doors: int = 0
+    closed_probability: float = 0.5
+    toggle_probability: float = 0.0
     hover: bool = False
 
     def __post_init__(self) -> None:
         require(self.observation in KINDS, "observation", self.observation, " or ".join(KINDS))
         require(self.history >= 1, "history", self.history, "at least 1")
         require(self.places >= 1, "places", self.places, "at least 1")
+        require(0 <= self.doors <= MOST_DOORS, "doors", self.doors, f"0 to {MOST_DOORS}")
+        for name in ("jump_probability", "closed_probability", "toggle_probability"):
+            value = getattr(self, name)
+            require(0.0 <= value <= 1.0, name, value, "a number in [0, 1]")
 
     @classmethod
     def of(cls, **options: Any) -> EnvOptions:
@@ -123,13 +142,22 @@ class EnvOptions:
         if isinstance(self.plan, FloorPlan):
             return self.plan
         if self.plan == "office":
-            return floorplans.generate("office", self.seed_of_plan, area_m2=600.0)
+            return _office(self.seed_of_plan, connected=self.doors > 0)
         return floorplans.load(self.plan)
 
     def mission(self) -> Mission:
-        """World of these options; its maps are computed once in a process."""
-        return _mission(
-            self.floor_plan(), self.preset(), self.speed, self.places, self.jump_probability
+        """World of these options; its maps are computed once in a process.
+
+        Raises
+        ------
+        WorldError
+            For doors, where the plan has none that can be closed.
+        """
+        mission = _mission(self.floor_plan(), self.preset(), self.speed, self.places, self.doors)
+        n_doors = mission.closed.shape[1]
+        doors = ModeProcess.switching(n_doors, self.closed_probability, self.toggle_probability)
+        return mission.with_modes(
+            doors.times(ModeProcess.jumping(self.places, self.jump_probability))
         )
 
     def preset(self) -> Literal["paper", "building"]:
@@ -166,19 +194,46 @@ class EnvOptions:
         )
 
 
+def _office(seed: int, *, connected: bool) -> FloorPlan:
+    """Generate an office; a connected one has doors between rooms, and all doors are open."""
+    plan = floorplans.generate(
+        "office", seed, area_m2=600.0, connecting_doors=1.0 if connected else 0.0
+    )
+    return with_changed(plan, shut_doors(plan)) if connected else plan
+
+
 @lru_cache(_MAPS_KEPT)
 def _mission(
-    plan: FloorPlan,
-    preset: Literal["paper", "building"],
-    speed: int,
-    places: int,
-    jump_probability: float,
+    plan: FloorPlan, preset: Literal["paper", "building"], speed: int, places: int, doors: int
 ) -> Mission:
     config = PRESETS[preset].config
     antenna = PRESETS[preset].antenna
+    if doors > 0:
+        return _mission_with_doors(plan, PRESETS[preset], speed, places, doors)
     if places == 1:
         radio_map = make_map(plan, config=config, receive_antenna=antenna)
         return GridWorld.from_map(plan, radio_map, speed).mission()
     spread = spread_places(plan, places, speed)
-    mission = mission_of_places(plan, spread, speed, config=config, receive_antenna=antenna)
-    return mission.with_modes(ModeProcess.jumping(places, jump_probability))
+    return mission_of_places(plan, spread, speed, config=config, receive_antenna=antenna)
+
+
+def _mission_with_doors(
+    plan: FloorPlan, preset: Preset, speed: int, n_places: int, n_doors: int
+) -> Mission:
+    layout = reachable_layout(plan, speed)
+    places = spread_places(plan, n_places, speed)
+    doors = detour_doors(plan, layout, places, n_doors)
+    if not doors:
+        raise WorldError(
+            f"doors: plan {plan.name!r} has no open door that lengthens the ways when it is closed "
+            "and cuts no cell off"
+        )
+    return mission_of_doors(
+        plan,
+        layout,
+        doors,
+        places,
+        starts=np.array([layout.nearest(*plan.require_start())]),
+        config=preset.config,
+        antenna=preset.antenna,
+    )

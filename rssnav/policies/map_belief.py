@@ -112,7 +112,7 @@ class MapBelief:
 
 
 class _KnownHops:
-    """Fewest steps to where each hypothesis would be found, by the doors that were seen closed.
+    """Fewest steps to where each hypothesis would be found, by the doors as they were last seen.
 
     Hypotheses that have steps of their own, for the state of the doors, keep theirs.
     """
@@ -130,14 +130,15 @@ class _KnownHops:
         self._next = self._hypotheses.layout.next_state
 
     def see(self, cell: int, mask: NDArray[np.bool_]) -> None:
-        """Note the possible actions in a cell; where steps are missing, find other ways."""
-        blocked = np.flatnonzero((self._next[cell] >= 0) & ~mask)
-        if self._own or not blocked.size:
+        """Note the possible actions in a cell; where a door has changed, find other ways."""
+        beyond = self._hypotheses.layout.next_state[cell]
+        seen = np.where(mask, beyond, -1)
+        changed = np.flatnonzero(seen != self._next[cell])
+        if self._own or not changed.size:
             return
-        there = self._next[cell, blocked]
         self._next = self._next.copy()
-        self._next[cell, blocked] = -1
-        self._next[there, (blocked + 4) % 8] = -1
+        self._next[cell, changed] = seen[changed]
+        self._next[beyond[changed], (changed + 4) % 8] = np.where(mask[changed], cell, -1)
         self.values = np.full_like(self.values, NO_WAY)
         steps_to_found(self._next, self._hypotheses.found, self.values, self._queue, self._reached)
 

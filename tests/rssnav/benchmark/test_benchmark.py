@@ -13,8 +13,11 @@ from benchmark_records import record
 from small_missions import room_mission
 
 import floorplans
+from raytrace import Grid
+from rssnav.benchmark import running
 from rssnav.benchmark.buildings import (
     DOORS,
+    FEWEST_STEPS,
     GOAL,
     LEAST_STEPS,
     Building,
@@ -28,7 +31,8 @@ from rssnav.benchmark.policies import POLICIES, Briefing, Guarded, PolicySpec, p
 from rssnav.benchmark.protocol import CONDITIONS, FULL, Extent, conditions_of, extent_of
 from rssnav.benchmark.running import run, shortest
 from rssnav.benchmark.scores import WITHIN_S, scores, spl
-from rssnav.missions import HOVER, Flights, ModeProcess, RandomPolicy, Task, fly
+from rssnav.maps import CELL_SIZE_M, HEIGHT_M
+from rssnav.missions import HOVER, Flights, Layout, ModeProcess, RandomPolicy, Task, fly
 from rssnav.policies import Hypotheses
 
 CONDITION = {condition.name: condition for condition in CONDITIONS}
@@ -256,6 +260,69 @@ def test_several_processes_give_the_same_as_one(folder):
     together = run(POLICIES[:1], extent, folder, threads=2)
     assert [r.building for r in together] == sorted(r.building for r in together)
     assert [replace(r, cpu_s=0.0) for r in together] == [replace(r, cpu_s=0.0) for r in alone]
+
+
+def test_flights_of_another_program_are_flown_again(folder, monkeypatch):
+    before = run([EAST], SMALL, folder, threads=1)
+    (file,) = (folder / "flights").iterdir()
+    content = file.read_text()
+    run([EAST], SMALL, folder, threads=1)
+    assert file.read_text() == content
+    monkeypatch.setattr(running, "_program", lambda: "another")
+    after = run([EAST], SMALL, folder, threads=1)
+    assert json.loads(file.read_text())["program"] == "another"
+    assert [replace(r, cpu_s=0.0) for r in after] == [replace(r, cpu_s=0.0) for r in before]
+
+
+def place_of(building, cell):
+    x, y = building.layout.position[cell].tolist()
+    return (x + 0.1, y + 0.1, 1.2)
+
+
+def in_rooms(width_m, height_m=3.0, cells=(0,)):
+    """Return a building of one room of a plan of one's own, with transmitters in some cells."""
+    corners = [[0, 0], [width_m, 0], [width_m, height_m], [0, height_m], [0, 0]]
+    plan = floorplans.loads(ROOM.format(corners=corners))
+    grid = Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M)
+    building = Building("own", 0, plan, Layout.of_plan(plan, grid), ())
+    return replace(building, places=tuple(place_of(building, cell) for cell in cells))
+
+
+ROOM = """
+name = "room"
+format = 1
+height_m = 3
+floor_material = "concrete"
+ceiling_material = "concrete"
+outline = {corners}
+[[walls]]
+points = {corners}
+material = "concrete"
+thickness_m = 0.2
+"""
+
+
+@pytest.mark.parametrize("width_m", [9.0, 12.0, 15.0, 20.0])
+def test_flights_begin_ten_steps_away_or_in_the_farthest_cells(width_m):
+    """Steps are counted cell by cell to where the RSS is above the level."""
+    building = in_rooms(width_m)
+    mission = building.mission()
+    found = GOAL.cells(mission)[0]
+    position = building.layout.position
+    apart = np.abs(position[:, None] - position[found]).max(
+        axis=-1
+    )  # king's moves, no wall between
+    steps = np.round(apart.min(axis=1)).astype(int)
+    assert steps.max() >= FEWEST_STEPS
+    expected = np.flatnonzero(steps >= min(LEAST_STEPS, steps.max()))
+    assert mission.starts.tolist() == expected.tolist()
+
+
+def test_a_building_in_which_every_cell_is_near_is_refused():
+    with pytest.raises(ValueError, match=r"own-000: .*a larger building is needed"):
+        in_rooms(5.0).mission()
+    with pytest.raises(ValueError, match="a larger building is needed"):
+        in_rooms(9.0, cells=(0, 8)).mission()  # far from one, near the other
 
 
 def test_a_damaged_file_of_flights_is_flown_again(folder):

@@ -20,6 +20,7 @@ from rssnav.envs import IDS, NavigationEnv, NavigationVectorEnv  # noqa: E402
 from rssnav.envs import options as env_options  # noqa: E402
 from rssnav.envs.options import EnvOptions  # noqa: E402
 from rssnav.envs.rendering import save_gif  # noqa: E402
+from rssnav.missions.layout import WorldError  # noqa: E402
 from rssnav.presets import Preset  # noqa: E402
 
 QUICK = Preset(TraceConfig(1, 0, 1), HalfWaveDipole())
@@ -51,6 +52,7 @@ OPTIONS = {
     "noise": {"sigma_db": 2.0, "correlation": 0.3, "confirmations": 3, "hover": True},
     "test": {"sigma_db": 2.0, "confirmations": 9, "confirmation_error": 0.1},
     "places": {"goal_dbm": None, "places": 3, "jump_probability": 0.02, "observation": "history"},
+    "doors": {"doors": 1, "places": 2, "toggle_probability": 0.1, "observation": "dict"},
     "battery": {"battery_kj": 4.0, "per_kj": -1.0, "reward": "none"},
 }
 
@@ -146,7 +148,34 @@ def test_gymnasium_finds_the_ids_by_an_entry_point():
     gymnasium.make_vec("rssnav/Office-v0", num_envs=1).spec.to_json()
 
 
+@pytest.mark.parametrize(("probability", "most"), [(0.0, 1), (0.25, 2)])
+def test_doors_change_masks_during_a_flight_only_beside_them(probability, most):
+    options = {"doors": 1, "toggle_probability": probability}
+    env = made("rssnav/Building-v0", **options).unwrapped
+    beside = set(np.flatnonzero(env.mission.sees[:, 0]).tolist())
+    chooser, counts = np.random.default_rng(0), {True: set(), False: set()}
+    for episode in range(20):
+        _, info = env.reset(seed=episode)
+        ended, masks = False, {}
+        while not ended:
+            masks.setdefault(env.trail[-1], set()).add(tuple(info["action_mask"]))
+            action = chooser.choice(np.flatnonzero(info["action_mask"]))
+            _, _, terminated, truncated, info = env.step(action)
+            ended = terminated or truncated
+        for cell, found in masks.items():
+            counts[cell in beside].add(len(found))
+    assert max(counts[True]) == most
+    assert counts[False] == {1}
+
+
 WRONG = {
+    "doors": ({"doors": 7}, ValueError, "doors = 7: expected 0 to 6"),
+    "no door": ({"plan": "scenario1", "doors": 1}, WorldError, "'scenario1' has no open door"),
+    "probability": (
+        {"doors": 1, "closed_probability": 2.0},
+        ValueError,
+        "closed_probability = 2.0",
+    ),
     "option": ({"speeed": 1}, TypeError, "speeed: no such option; there are plan"),
     "observation": (
         {"observation": "sound"},
@@ -160,7 +189,7 @@ WRONG = {
 @pytest.mark.parametrize(("options", "error", "message"), WRONG.values(), ids=WRONG)
 def test_wrong_options_and_actions_are_refused(options, error, message):
     def fly():
-        env = NavigationEnv(EnvOptions.of(plan="flat", goal_dbm=-30.0, **options))
+        env = NavigationEnv(EnvOptions.of(**{"plan": "flat", "goal_dbm": -30.0} | options))
         env.reset(seed=0)
         env.step(9)
 
