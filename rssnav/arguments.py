@@ -1,6 +1,7 @@
 """Arguments out of range."""
 
 import math
+from numbers import Integral
 
 
 def is_finite(value: float) -> bool:
@@ -9,6 +10,13 @@ def is_finite(value: float) -> bool:
         return math.isfinite(value)
     except OverflowError:
         return False
+
+
+def is_whole(value: object, low: int, high: int) -> bool:
+    """Whether something is a whole number, of Python or NumPy, from ``low`` to ``high``."""
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        return False
+    return low <= int(value) <= high
 
 
 def require(holds: bool, name: str, value: object, expected: str) -> None:

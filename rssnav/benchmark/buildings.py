@@ -152,8 +152,8 @@ class Building:
         nearest = hops.min(axis=1)
         if hops.max() >= NO_WAY or nearest.max() < FEWEST_STEPS:
             raise WorldError(
-                f"building {self.name}: from no cell each transmitter is found, and in "
-                f"{FEWEST_STEPS} steps at least; a larger building is needed"
+                f"building {self.name} (plan {self.plan.name!r}): no cell is {FEWEST_STEPS} steps "
+                "or more from each transmitter, with a way to it; a larger building is needed"
             )
         far = nearest >= min(LEAST_STEPS, int(nearest.max()))
         return mission.from_starts(np.flatnonzero(far))

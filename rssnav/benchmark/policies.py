@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from hashlib import sha256
 from importlib import import_module
 from importlib.metadata import version
+from operator import index
 from pathlib import Path
 from typing import Any, Literal, cast, get_args
 
@@ -40,7 +42,8 @@ Track = Literal["RSS", "plan", "maps", "places", "world"]
 class Briefing:
     """What a policy is told before it flies in a building.
 
-    A policy reads `condition`, `layout` and, as far as its track allows, `hypotheses` and `world`.
+    A policy reads `condition`, `layout` and, as far as its track allows, `hypotheses` and
+    `world_of`. What it gets are copies: it may write into them, and no other policy sees that.
     """
 
     condition: Condition
@@ -55,7 +58,7 @@ class Briefing:
         Without the plan all steps are -1: a policy learns them from the masks. Where doors open and
         close, the steps are those with all of them open.
         """
-        layout = self._building.layout
+        layout = deepcopy(self._building.layout)
         if self.track == "RSS":
             return replace(layout, next_state=np.full_like(layout.next_state, -1))
         return layout
@@ -69,7 +72,8 @@ class Briefing:
         them.
         """
         if self.track == "maps":
-            return self._building.hypotheses
+            _ = self._building.hypotheses.hops  # found once, for all policies
+            return deepcopy(self._building.hypotheses)
         if self.track == "places":
             return Hypotheses.of_mission(self.world_of("places"), self.condition.task)
         raise ValueError(f"hypotheses: a policy of the track {self.track!r} has no maps")
@@ -78,7 +82,7 @@ class Briefing:
         """Return the mission itself, to a policy of this track."""
         if self.track != track:
             raise ValueError(f"world: a policy of the track {self.track!r} must not see it")
-        return self.condition.world(self._mission)
+        return deepcopy(self.condition.world(self._mission))
 
 
 @dataclass(frozen=True)
@@ -224,6 +228,7 @@ def policy_of(text: str, track: str, name: str | None = None) -> PolicySpec:
             f"policy {text!r}: {error}; expected module:function with a function that takes a "
             "Briefing and returns a policy"
         ) from error
+    check(callable(make), "policy", text, "a function that takes a Briefing and returns a policy")
     file = getattr(program, "__file__", None)
     source = sha256(Path(file).read_bytes()).hexdigest() if file else ""
     return PolicySpec(name or function, known, make, source)
@@ -254,8 +259,20 @@ class Guarded:
         self._policy.begin(generator)
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
-        """Return the policy's action, or hover where it is impossible."""
-        action = int(self._policy.act(observation, mask))
+        """Return the policy's action, or hover where it is impossible.
+
+        Raises
+        ------
+        BenchmarkError
+            For what is no whole number.
+        """
+        chosen: object = self._policy.act(observation, mask.copy())
+        try:
+            action = index(chosen)  # pyright: ignore[reportArgumentType]
+        except TypeError:
+            raise BenchmarkError(
+                f"policy {self.name!r}: action {chosen!r}; expected a whole number, 0 to 7 or HOVER"
+            ) from None
         if action == HOVER or (0 <= action < mask.size and mask[action]):
             return action
         self.collisions += 1

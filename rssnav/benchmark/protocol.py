@@ -163,7 +163,7 @@ def extent_of(
     whole: Extent,
     split: str,
     generated: int | None,
-    plans: Sequence[Path],
+    plans: Sequence[str | Path],
     seeds: int | None = None,
 ) -> Extent:
     """Part of an extent, and further plans.
@@ -176,8 +176,8 @@ def extent_of(
         Another split.
     generated : int or None
         Another number of generated buildings.
-    plans : sequence of Path
-        Files of further plans.
+    plans : sequence of str or Path
+        Names of built-in plans, or files, of further plans.
     seeds : int, optional
         Another number of seeds.
 
@@ -196,7 +196,7 @@ def extent_of(
         paper=whole.paper and known == "test",
         split=known,
         generated=count,
-        plans=tuple(floorplans.load(file).sha256 for file in plans),
+        plans=tuple(floorplans.load(str(plan)).sha256 for plan in plans),
         plan_files=tuple(map(str, plans)),
         seeds=seeds or whole.seeds,
     )

@@ -20,12 +20,13 @@ from rssnav.benchmark.policies import Track
 from rssnav.benchmark.protocol import (
     BENCHMARK_VERSION,
     CONDITIONS,
+    MAX_STEPS,
     Extent,
     conditions_of,
     flights_of_a_seed,
 )
 from rssnav.benchmark.scores import WITHIN_S, Score
-from rssnav.experiments.statistics import Estimate
+from rssnav.experiments.statistics import Estimate, mean
 
 
 def as_json(scores: Sequence[Score], extent: Extent) -> str:
@@ -143,11 +144,27 @@ def _check_together(score: Score, where: str, extent: Extent) -> None:
          "most 1 together"),
         (score.found_within == sorted(score.found_within), "found_within: numbers that rise"),
         (abs(score.found_within[-1] - score.success.value) < 1e-3, "found_within: success at last"),
-        ((score.median_s is None) == (score.found_within[-1] < 0.5), "median_s: null if and only "
-         "if less than half are found"),
+        (_is_median(score), "median_s: the time at which found_within is a half, or null"),
+        (_is_interval(score), "spl: the interval of spl_by_building"),
+        (score.turns <= MAX_STEPS, f"turns: at most {MAX_STEPS}, the steps of a flight"),
     ):  # fmt: skip
         if not holds:
             raise BenchmarkError(f"{where}: expected {expected}")
+
+
+def _is_median(score: Score) -> bool:
+    """Whether half of the flights have found the transmitter at the median, and no earlier."""
+    found = math.inf if score.median_s is None else score.median_s
+    return all(
+        (found <= limit) == (part >= 0.5) or abs(part - 0.5) < 1e-4  # parts are rounded
+        for limit, part in zip(WITHIN_S, score.found_within, strict=True)
+    )
+
+
+def _is_interval(score: Score) -> bool:
+    """Whether the interval of SPL is that of the buildings, up to other draws of the bootstrap."""
+    expected = mean(score.spl_by_building)
+    return max(abs(score.spl.low - expected.low), abs(score.spl.high - expected.high)) < 0.005
 
 
 def _number(low: float, high: float) -> Callable[[Any], bool]:

@@ -67,8 +67,12 @@ def run_benchmark(
         typer.Option(metavar="N", min=1, max=1000, help="Number of seeds.", show_default="10"),
     ] = None,
     plans: Annotated[
-        list[Path] | None,
-        typer.Option("--plan", metavar="FILE", help="Fly in this plan too; may be repeated."),
+        list[str] | None,
+        typer.Option(
+            "--plan",
+            metavar="PLAN",
+            help="Fly in this plan too, a file or a built-in one; may be repeated.",
+        ),
     ] = None,
     beside: Annotated[
         list[Path] | None,

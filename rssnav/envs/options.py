@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
 
 import floorplans
 from floorplans import FloorPlan
-from rssnav.arguments import require
+from rssnav.arguments import is_whole, require
 from rssnav.discrete_states import AGENT_SENSITIVITY_DBM, Fluctuation, IntervalStates
 from rssnav.doors import shut_doors, with_changed
 from rssnav.maps import make_map
@@ -30,8 +31,26 @@ from rssnav.presets import PRESETS, Preset, default_preset
 from rssnav.world import GridWorld
 
 ObservationKind = Literal["rss", "history", "cell", "dict"]
+_OF_THE_PAPER = ("scenario1", "scenario2")
 KINDS = ("rss", "history", "cell", "dict")
 _MAPS_KEPT = 8
+_KINDS_OF = (("plan", str | FloorPlan, "a name or a FloorPlan"), ("hover", bool, "True or False"))
+_WHOLE = {
+    "seed_of_plan": (0, 2**63 - 1),
+    "speed": (1, 1_000_000),
+    "history": (1, 10_000),
+    "places": (1, 10_000),
+    "doors": (0, MOST_DOORS),
+    "confirmations": (1, 2**31 - 1),
+    "max_steps": (1, 2**31 - 1),
+}
+_OPTIONAL = ("battery_kj", "goal_dbm", "confirmation_error")
+_NUMBERS = (
+    *_OPTIONAL,
+    *("goal_reward", "per_second", "per_kj", "goal_m", "sigma_db", "correlation"),
+    "sensitivity_dbm",
+    *("jump_probability", "closed_probability", "toggle_probability"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +79,8 @@ class EnvOptions:
     max_steps : int
         Seconds after which it is truncated.
     goal_dbm : float or None
-        Reading above which the transmitter is found [dBm]; None to find it within ``goal_m``.
+        Reading above which the transmitter is found [dBm]; None to find it within ``goal_m``, but
+        above -21 dBm at its own place in the paper's two plans.
     goal_m : float
         Distance below which it is found if ``goal_dbm`` is None [m].
     confirmations : int
@@ -84,6 +104,11 @@ class EnvOptions:
         second.
     hover : bool
         Whether a ninth action stays in the cell for one more reading.
+
+    Raises
+    ------
+    ValueError
+        For a value out of range, and for confirmations of a goal that no reading decides.
     """
 
     plan: str | FloorPlan
@@ -113,12 +138,22 @@ class EnvOptions:
 
     def __post_init__(self) -> None:
         require(self.observation in KINDS, "observation", self.observation, " or ".join(KINDS))
-        require(self.history >= 1, "history", self.history, "at least 1")
-        require(self.places >= 1, "places", self.places, "at least 1")
-        require(0 <= self.doors <= MOST_DOORS, "doors", self.doors, f"0 to {MOST_DOORS}")
+        for name, kind, expected in _KINDS_OF:
+            value = getattr(self, name)
+            require(isinstance(value, kind), name, value, expected)
+        for name, (low, high) in _WHOLE.items():
+            value = getattr(self, name)
+            require(is_whole(value, low, high), name, value, f"a whole number from {low} to {high}")
+        for name in _NUMBERS:
+            value = getattr(self, name)
+            missing = value is None and name in _OPTIONAL
+            require(missing or isinstance(value, Real), name, value, "a number")
         for name in ("jump_probability", "closed_probability", "toggle_probability"):
             value = getattr(self, name)
             require(0.0 <= value <= 1.0, name, value, "a number in [0, 1]")
+        if self.confirmations > 1 or self.confirmation_error is not None:
+            by_reading = isinstance(self.task().goal, ReadingAbove)
+            require(by_reading, "goal_dbm", self.goal_dbm, "a level for the readings that confirm")
 
     @classmethod
     def of(cls, **options: Any) -> EnvOptions:
@@ -168,8 +203,8 @@ class EnvOptions:
         """Aim of these options."""
         energy = MultirotorEnergy() if self.per_kj != 0.0 or self.battery_kj is not None else None
         level = self.goal_dbm
-        if level is None and self.preset() == "paper" and self.places == 1:
-            level = -21.0  # the paper's
+        if level is None and self.plan in _OF_THE_PAPER and self.places == 1:
+            level = -21.0
         goal = Within(self.goal_m)
         if level is not None:
             goal = ReadingAbove(level, self.confirmations, self.confirmation_error)

@@ -116,9 +116,9 @@ class Flyer:
         return float(self.fleet.reward[0]), int(self.fleet.status[0])
 
     def mask(self) -> NDArray[np.bool_]:
-        """Possible actions (8,)."""
+        """Possible actions (8,), a copy."""
         mode, cell = self.fleet.whole[0, :2]
-        return self._masks[self.mission.layout_of_mode[mode], cell]
+        return self._masks[self.mission.layout_of_mode[mode], cell].copy()
 
     def seen(self) -> Seen:
         """What the agent sees."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
+from rssnav.arguments import require
 from rssnav.discrete_states import (
     AGENT_SENSITIVITY_DBM,
     ExactStates,
@@ -36,7 +38,8 @@ class Observation:
     Raises
     ------
     ValueError
-        For exact states of readings that fluctuate, and a reading beside the mode.
+        For exact states of readings that fluctuate, a reading beside the mode, and a sensitivity
+        that is no number below infinity.
     """
 
     reading: StateRule | None = field(default_factory=ExactStates)
@@ -48,6 +51,8 @@ class Observation:
     sensitivity_dbm: float = AGENT_SENSITIVITY_DBM
 
     def __post_init__(self) -> None:
+        proper = self.sensitivity_dbm < math.inf
+        require(proper, "sensitivity_dbm", self.sensitivity_dbm, "a number below infinity [dBm]")
         if self.fluctuation.sigma_db > 0.0 and isinstance(self.reading, ExactStates):
             raise ValueError(
                 f"states: with readings that fluctuate (sigma_db = {self.fluctuation.sigma_db:g}) "

@@ -47,8 +47,8 @@ def are_in_sight(
     """Whether the straight ways (n,) between points (n, 2) [m] stay in the building, off walls."""
     walls = shapely.multilinestrings(plan.solid_segments(height_m))
     ways = shapely.linestrings(np.stack([one, other], axis=1))
-    inside: NDArray[np.bool_] = shapely.covers(plan.outline, ways)
-    return inside & ~shapely.intersects(ways, walls)
+    inside, blocked = shapely.covers(plan.outline, ways), shapely.intersects(ways, walls)
+    return np.asarray(inside) & ~np.asarray(blocked)
 
 
 def places_beside(

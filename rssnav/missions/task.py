@@ -9,11 +9,12 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.arguments import is_finite, require
+from rssnav.arguments import is_finite, is_whole, require
 from rssnav.missions.layout import WorldError
 from rssnav.missions.mission import Mission
 
 GOAL_DISTANCE_M = 2.0
+_MOST = 2**31 - 1  # seconds, readings
 _MISSES = 0.05
 
 
@@ -67,7 +68,8 @@ class ReadingAbove:
 
     def __post_init__(self) -> None:
         require(is_finite(self.level_dbm), "level_dbm", self.level_dbm, "a finite level [dBm]")
-        require(self.confirmations >= 1, "confirmations", self.confirmations, "at least 1")
+        whole = is_whole(self.confirmations, 1, _MOST)
+        require(whole, "confirmations", self.confirmations, f"a whole number from 1 to {_MOST}")
         if self.error is not None:
             require(0.0 < self.error < 1.0, "error", self.error, "a probability in (0, 1)")
             several = self.confirmations > 1
@@ -174,8 +176,8 @@ class Task:
             value = getattr(self, name)
             require(is_finite(value), name, value, "a finite number")
         require(self.battery_kj > 0.0, "battery_kj", self.battery_kj, "a positive number")
-        whole = 1 <= self.max_steps < 2**31
-        require(whole, "max_steps", self.max_steps, "an integer from 1 to 2147483647")
+        whole = is_whole(self.max_steps, 1, _MOST)
+        require(whole, "max_steps", self.max_steps, f"an integer from 1 to {_MOST}")
         if self.energy is None and (self.per_kj != 0.0 or self.battery_kj < math.inf):
             raise ValueError(
                 "energy: per_kj and battery_kj need a model of energy, such as MultirotorEnergy()"

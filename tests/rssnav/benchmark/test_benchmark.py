@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from copy import deepcopy
 from dataclasses import replace
 from itertools import combinations
 
@@ -12,17 +13,13 @@ import pytest
 from benchmark_records import record
 from small_missions import room_mission
 
-import floorplans
-from raytrace import Grid
 from rssnav.benchmark import running
 from rssnav.benchmark.buildings import (
     DOORS,
-    FEWEST_STEPS,
     GOAL,
     LEAST_STEPS,
     Building,
     generated,
-    own,
     paper,
 )
 from rssnav.benchmark.errors import BenchmarkError
@@ -31,8 +28,7 @@ from rssnav.benchmark.policies import POLICIES, Briefing, Guarded, PolicySpec, p
 from rssnav.benchmark.protocol import CONDITIONS, FULL, Extent, conditions_of, extent_of
 from rssnav.benchmark.running import run, shortest
 from rssnav.benchmark.scores import WITHIN_S, scores, spl
-from rssnav.maps import CELL_SIZE_M, HEIGHT_M
-from rssnav.missions import HOVER, Flights, Layout, ModeProcess, RandomPolicy, Task, fly
+from rssnav.missions import HOVER, Flights, ModeProcess, RandomPolicy, Task, fly
 from rssnav.policies import Hypotheses
 
 CONDITION = {condition.name: condition for condition in CONDITIONS}
@@ -200,6 +196,31 @@ def test_doors_by_sight_cost_more_than_known_ones_and_memory_saves_flights(doors
     assert flown["distance law, doors forgotten"].found.mean() < 0.9
 
 
+@pytest.mark.parametrize("track", ["plan", "maps", "places", "world"])
+def test_what_a_policy_writes_into_its_briefing_stays_there(building, mission, track, monkeypatch):
+    coarse = Hypotheses.of_mission(mission, Task(GOAL))
+    monkeypatch.setitem(vars(building), "hypotheses", coarse)  # as many maps as needed here
+    told = Briefing(CONDITION["static"], track, building, mission)
+    mine = [told.layout.next_state, told.layout.position]
+    if track in ("maps", "places"):
+        maps = told.hypotheses
+        mine += [maps.rss_dbm, maps.found, maps.position, maps.hops, maps.layout.next_state]
+    if track == "world":
+        world = told.world_of("world")
+        mine += [world.rss_dbm, world.source, world.starts, world.layout.next_state]
+    before = deepcopy((building.layout, mission.rss_dbm, mission.source, mission.starts, coarse))
+    for array in mine:
+        array[:] = 0
+    after = (building.layout, mission.rss_dbm, mission.source, mission.starts, coarse)
+    for one, other in zip(before[1:4], after[1:4], strict=True):
+        np.testing.assert_array_equal(one, other)
+    for name in ("next_state", "position"):
+        np.testing.assert_array_equal(getattr(before[0], name), getattr(after[0], name))
+    for name in ("rss_dbm", "found", "position", "hops"):
+        np.testing.assert_array_equal(getattr(before[4], name), getattr(after[4], name))
+    np.testing.assert_array_equal(before[4].layout.next_state, after[4].layout.next_state)
+
+
 def test_the_papers_buildings_have_no_doors_that_open_and_close():
     assert CONDITION["doors"] not in conditions_of("paper")
     assert conditions_of("test") == CONDITIONS
@@ -233,6 +254,29 @@ def test_impossible_actions_are_counted_and_become_hovering():
     assert policy.collisions == 30 - np.count_nonzero(np.diff(flights.cells[0]))
     assert Guarded(Stubborn()).act(None, np.ones(8, dtype=bool)) == 0
     assert policy.act(None, np.zeros(8, dtype=bool)) == HOVER
+
+
+class Forger(RandomPolicy):
+    """Writes into the mask that all is possible, and returns what it was made with."""
+
+    def __init__(self, action):
+        super().__init__()
+        self.action = action
+
+    def act(self, observation, mask):
+        mask[:] = True
+        return self.action
+
+
+def test_masks_cannot_be_forged_and_what_is_no_action_is_named():
+    mission, sight = room_mission(ModeProcess.steady(4)), CONDITION["static"].observation()
+    east = Guarded(Forger(0))
+    flights = fly(mission, Task(GOAL, "none", max_steps=30), sight, east, episodes=2)
+    moved = sum(np.count_nonzero(np.diff(cells)) for cells in flights.cells)
+    assert east.collisions == 60 - moved
+    for action in (float("nan"), None, "east", 2.0):
+        with pytest.raises(BenchmarkError, match="expected a whole number, 0 to 7 or HOVER"):
+            Guarded(Forger(action)).act(None, np.ones(8, dtype=bool))
 
 
 WALK = PolicySpec("walk", "RSS", lambda _: RandomPolicy())
@@ -274,57 +318,6 @@ def test_flights_of_another_program_are_flown_again(folder, monkeypatch):
     assert [replace(r, cpu_s=0.0) for r in after] == [replace(r, cpu_s=0.0) for r in before]
 
 
-def place_of(building, cell):
-    x, y = building.layout.position[cell].tolist()
-    return (x + 0.1, y + 0.1, 1.2)
-
-
-def in_rooms(width_m, height_m=3.0, cells=(0,)):
-    """Return a building of one room of a plan of one's own, with transmitters in some cells."""
-    corners = [[0, 0], [width_m, 0], [width_m, height_m], [0, height_m], [0, 0]]
-    plan = floorplans.loads(ROOM.format(corners=corners))
-    grid = Grid.over(plan.bounds, CELL_SIZE_M, HEIGHT_M)
-    building = Building("own", 0, plan, Layout.of_plan(plan, grid), ())
-    return replace(building, places=tuple(place_of(building, cell) for cell in cells))
-
-
-ROOM = """
-name = "room"
-format = 1
-height_m = 3
-floor_material = "concrete"
-ceiling_material = "concrete"
-outline = {corners}
-[[walls]]
-points = {corners}
-material = "concrete"
-thickness_m = 0.2
-"""
-
-
-@pytest.mark.parametrize("width_m", [9.0, 12.0, 15.0, 20.0])
-def test_flights_begin_ten_steps_away_or_in_the_farthest_cells(width_m):
-    """Steps are counted cell by cell to where the RSS is above the level."""
-    building = in_rooms(width_m)
-    mission = building.mission()
-    found = GOAL.cells(mission)[0]
-    position = building.layout.position
-    apart = np.abs(position[:, None] - position[found]).max(
-        axis=-1
-    )  # king's moves, no wall between
-    steps = np.round(apart.min(axis=1)).astype(int)
-    assert steps.max() >= FEWEST_STEPS
-    expected = np.flatnonzero(steps >= min(LEAST_STEPS, steps.max()))
-    assert mission.starts.tolist() == expected.tolist()
-
-
-def test_a_building_in_which_every_cell_is_near_is_refused():
-    with pytest.raises(ValueError, match=r"own-000: .*a larger building is needed"):
-        in_rooms(5.0).mission()
-    with pytest.raises(ValueError, match="a larger building is needed"):
-        in_rooms(9.0, cells=(0, 8)).mission()  # far from one, near the other
-
-
 def test_a_damaged_file_of_flights_is_flown_again(folder):
     before = run([EAST], SMALL, folder, threads=1)
     (file,) = (folder / "flights").iterdir()
@@ -345,29 +338,6 @@ def test_a_damaged_file_of_flights_is_flown_again(folder):
         assert json.loads(file.read_text())["seeds"] == SMALL.seeds
 
 
-def test_plans_of_ones_own_have_transmitters_in_reach(tmp_path):
-    file = tmp_path / "mine.toml"
-    file.write_text(
-        floorplans.dumps(floorplans.generate("office", 5, area_m2=400.0, n_transmitters=0))
-    )
-    (building,) = own((file,))
-    mission = building.mission()
-    assert mission.n_modes == 3
-    assert Hypotheses.of_mission(mission, Task(GOAL)).hops.max() < 1000
-
-
-def test_plans_of_ones_own_are_compared_by_content(tmp_path):
-    text = floorplans.dumps(floorplans.load("flat"))
-    one, other = tmp_path / "one.toml", tmp_path / "other.toml"
-    one.write_text(text)
-    other.write_text(text)
-    extents = [extent_of(FULL, "test", 0, (file,)) for file in (one, other, "flat")]
-    assert extents[0] == extents[1] == extents[2]
-    assert extents[0].written == extents[1].written
-    other.write_text(text.replace('"brick"', '"concrete"'))
-    assert extent_of(FULL, "test", 0, (other,)) != extents[0]
-
-
 def test_what_is_no_policy_is_named():
     with pytest.raises(BenchmarkError, match="policy: 3; expected an object with a method begin"):
         Guarded(3)
@@ -376,6 +346,8 @@ def test_what_is_no_policy_is_named():
 def test_unknown_policies_tracks_and_splits_are_named():
     with pytest.raises(BenchmarkError, match="expected module:function"):
         policy_of("nowhere:make", "RSS")
+    with pytest.raises(BenchmarkError, match="a function that takes a Briefing"):
+        policy_of("math:pi", "RSS")
     with pytest.raises(BenchmarkError, match="track"):
         policy_of("json:loads", "everything")
     with pytest.raises(BenchmarkError, match="split"):

@@ -66,6 +66,9 @@ DAMAGE = {
     "distribution": (of_score("found_within", [0.5, 0.4, 0.6, 0.6, 0.6]), "numbers that rise"),
     "success": (of_score("success", {"value": 1.0, "low": 1.0, "high": 1.0}), "at most 1 together"),
     "median": (of_score("median_s", None), "median_s"),
+    "early median": (of_score("median_s", 1.0), "median_s"),
+    "wide interval": (lambda c: c["scores"][0]["spl"].update(low=0.0), "spl: the interval of"),
+    "turns": (of_score("turns", 401.0), "turns: at most 400"),
 }
 
 

@@ -20,6 +20,7 @@ from rssnav.envs import IDS, NavigationEnv, NavigationVectorEnv  # noqa: E402
 from rssnav.envs import options as env_options  # noqa: E402
 from rssnav.envs.options import EnvOptions  # noqa: E402
 from rssnav.envs.rendering import save_gif  # noqa: E402
+from rssnav.missions import ReadingAbove, Within  # noqa: E402
 from rssnav.missions.layout import WorldError  # noqa: E402
 from rssnav.presets import Preset  # noqa: E402
 
@@ -148,6 +149,12 @@ def test_gymnasium_finds_the_ids_by_an_entry_point():
     gymnasium.make_vec("rssnav/Office-v0", num_envs=1).spec.to_json()
 
 
+def test_only_the_papers_plans_have_a_level_by_themselves():
+    assert EnvOptions.of(plan="scenario1").task().goal == ReadingAbove(-21.0)
+    assert EnvOptions.of(plan="flat").task().goal == Within(2.0)
+    gymnasium.make("rssnav/Building-v0", plan="flat", disable_env_checker=True).reset(seed=0)
+
+
 @pytest.mark.parametrize(("probability", "most"), [(0.0, 1), (0.25, 2)])
 def test_doors_change_masks_during_a_flight_only_beside_them(probability, most):
     options = {"doors": 1, "toggle_probability": probability}
@@ -169,7 +176,7 @@ def test_doors_change_masks_during_a_flight_only_beside_them(probability, most):
 
 
 WRONG = {
-    "doors": ({"doors": 7}, ValueError, "doors = 7: expected 0 to 6"),
+    "doors": ({"doors": 7}, ValueError, "doors = 7: expected a whole number from 0 to 6"),
     "no door": ({"plan": "scenario1", "doors": 1}, WorldError, "'scenario1' has no open door"),
     "probability": (
         {"doors": 1, "closed_probability": 2.0},
@@ -181,6 +188,19 @@ WRONG = {
         {"observation": "sound"},
         ValueError,
         "observation = 'sound': expected rss or history",
+    ),
+    "half a place": ({"places": 2.5}, ValueError, "places = 2.5: expected a whole number from 1"),
+    "text": ({"sigma_db": "2"}, ValueError, "sigma_db = '2': expected a number"),
+    "none": ({"sigma_db": None}, ValueError, "sigma_db = None: expected a number"),
+    "plan": ({"plan": 3}, ValueError, "plan = 3: expected a name"),
+    "seconds": ({"max_steps": 1.5}, ValueError, "max_steps = 1.5: expected"),
+    "long history": ({"history": 10**12}, ValueError, "history = 1000000000000: expected"),
+    "sensitivity": ({"sensitivity_dbm": np.nan}, ValueError, "sensitivity_dbm = nan: expected"),
+    "choice": ({"hover": "no"}, ValueError, "hover = 'no': expected True or False"),
+    "confirmed distance": (
+        {"goal_dbm": None, "confirmations": 9},
+        ValueError,
+        "goal_dbm = None: expected a level for the readings",
     ),
     "action": ({"hover": True}, ValueError, "action 9: expected 0 to 8"),
 }
