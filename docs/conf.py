@@ -7,6 +7,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
+from docstrings import properties_of
+
 project = "rssnav"
 author = "The rssnav developers"
 project_copyright = f"2026, {author}"
@@ -18,6 +20,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
+    "docstrings",
     "mathml",
     "repairs",
 ]
@@ -28,12 +31,16 @@ myst_heading_anchors = 3
 html_css_files = ["pages.css"]
 html_theme = "furo"
 html_title = "rssnav"
-exclude_patterns = ["_build", "_extensions", "gallery"]
+exclude_patterns = ["_build", "_extensions", "_templates", "gallery"]
 autodoc_default_options = {"members": True}
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 napoleon_numpy_docstring = True
-napoleon_use_ivar = True
+napoleon_use_param = False  # names that share a line and a description stay together
+napoleon_attr_annotations = False
+napoleon_custom_sections = [("Attributes", "params_style")]
+autosummary_context = {"properties_of": properties_of}
+templates_path = ["_templates"]
 suppress_warnings = ["ref.python"]  # fields of one name in two classes
 sphinx_gallery_conf = {
     "examples_dirs": "gallery",

@@ -48,6 +48,13 @@ class Rotated:
                 f"x_axis = {self.x_axis}, z_axis = {self.z_axis}: expected orthogonal unit vectors"
             )
 
+    def __repr__(self) -> str:
+        """Antenna and directions of its axes in one line."""
+        x_axis, z_axis = (
+            ", ".join(f"{part + 0.0:.4g}" for part in axis) for axis in (self.x_axis, self.z_axis)
+        )
+        return f"Rotated({self.antenna!r}, x_axis=({x_axis}), z_axis=({z_axis}))"
+
     @classmethod
     def towards(cls, antenna: Antenna, direction: Vector) -> Rotated:
         """Point the +x axis of an antenna in a direction of any length, its y axis level.

@@ -80,7 +80,8 @@ class Paths:
     def __repr__(self) -> str:
         """Numbers of paths and receivers in one line."""
         n, most = len(np.unique(self.receiver)), self.interactions.shape[1]
-        return f"<Paths: {len(self)} to {n} receivers, at most {most} interactions>"
+        receivers = "1 receiver" if n == 1 else f"{n} receivers"
+        return f"<Paths: {len(self)} to {receivers}, at most {most} interactions>"
 
     @property
     def delay_s(self) -> Floats:
@@ -239,10 +240,10 @@ class Paths:
         start_s: float = 0.0,
         n_receivers: int | None = None,
     ) -> ImpulseResponse:
-        """Sample each receiver's channel, band-limited to a bandwidth (docs/theory.md, eq. 39).
+        """Sample each receiver's channel, band-limited to a bandwidth.
 
-        The taps are ``sum of gain_i sinc(n - B (tau_i - start))``, 1 / B apart: the complex
-        baseband channel around the carrier, whose phase is part of the gains.
+        The taps are ``sum of gain_i sinc(n - B (tau_i - start))``, 1 / B apart (docs/theory.md,
+        eq. 39): the complex baseband channel around the carrier, whose phase is part of the gains.
 
         Parameters
         ----------
@@ -383,7 +384,8 @@ class ImpulseResponse:
     def __repr__(self) -> str:
         """Numbers of receivers and taps in one line."""
         n, taps = self.taps.shape
-        return f"<ImpulseResponse: {n} receivers, {taps} taps from {self.delay_s[0] * 1e9:g} ns>"
+        receivers = "1 receiver" if n == 1 else f"{n} receivers"
+        return f"<ImpulseResponse: {receivers}, {taps} taps from {self.delay_s[0] * 1e9:g} ns>"
 
 
 def _joined_pairs(pairs: list[Complexes], others: list[int]) -> Complexes | None:

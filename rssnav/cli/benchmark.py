@@ -34,7 +34,7 @@ def run_benchmark(
         str | None,
         typer.Option(
             metavar="MODULE:FUNCTION",
-            help="Fly this policy alone: a function that takes a Briefing and returns a policy.",
+            help="Evaluate only this policy: a function that returns a policy, given a Briefing.",
         ),
     ] = None,
     name: Annotated[
@@ -46,7 +46,7 @@ def run_benchmark(
         typer.Option(
             metavar="TRACK",
             help="What it is told: RSS (by default), plan, maps, places or world; without "
-            "--policy, fly those of this track alone.",
+            "--policy, evaluate only those of this track.",
             show_default=False,
         ),
     ] = None,

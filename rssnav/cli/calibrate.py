@@ -179,9 +179,10 @@ def _print(found: Calibration) -> None:
         say(_of_door(state))
     for told in found.found.not_told:
         say(
-            f"{told.value.material}, {told.value.kind}: not fitted, as the readings tell too "
-            f"little of it (a standard deviation changes them by {told.sensitivity_db:.2g} dB; "
-            f"they narrow its range to {100.0 * told.narrowing:.0f} %)"
+            f"{told.value.material}, {told.value.kind}: not fitted, as the readings hardly "
+            f"depend on it (one standard deviation of it changes them by "
+            f"{told.sensitivity_db:.2g} dB; they narrow its range to "
+            f"{100.0 * told.narrowing:.0f} %)"
         )
     for doubt in found.doubts:
         say(f"doubtful: {doubt}")

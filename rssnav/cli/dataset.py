@@ -64,7 +64,7 @@ def make(
             metavar="N",
             min=1,
             max=MAX_WORKERS,
-            help="Start a Dask cluster of so many processes on this machine.",
+            help="Start a Dask cluster of N processes on this machine.",
             show_default="threads of one process",
         ),
     ] = None,
@@ -76,14 +76,14 @@ def make(
     ] = None,
     max_memory: MaxMemory = None,
     retry: Annotated[
-        bool, typer.Option("--retry", help="Try plans again that could not be traced.")
+        bool, typer.Option("--retry", help="Retry plans that could not be traced.")
     ] = False,
     force: Annotated[
-        bool, typer.Option("--force", help="Replace what another spec has made in FOLDER.")
+        bool, typer.Option("--force", help="Overwrite a data set of another spec in FOLDER.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Make a data set of radio maps, or what is missing of it.
+    """Make a data set of radio maps, or complete one that was interrupted.
 
     Finished plans are saved: after an interruption the same command traces only the others. The
     number of processors and machines does not change the result.

@@ -42,7 +42,10 @@ def export(
         ),
     ],
 ) -> None:
-    """Write a data set in the layout of another project, whole or not at all."""
+    """Write a data set in the layout of another project.
+
+    Nothing is left behind if it fails.
+    """
     from rssnav.datasets.exporters.formats import export_dataset
 
     with one_progress("plans") as progress:

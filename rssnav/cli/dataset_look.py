@@ -77,7 +77,7 @@ def show(
         Path, typer.Option("-o", "--output", metavar="FILE", help="A .png, .svg or .pdf.")
     ],
     count: Annotated[
-        int, typer.Option(metavar="N", min=1, max=200, help="Maps on the picture.")
+        int, typer.Option(metavar="N", min=1, max=200, help="Number of maps in the picture.")
     ] = 20,
     layer: Annotated[str, typer.Option(metavar="NAME", help="The layer to draw.")] = "rss_dbm",
     split: Annotated[

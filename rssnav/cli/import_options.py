@@ -29,7 +29,7 @@ CeilingHeight = Annotated[
         metavar="M",
         min=0.1,
         max=1000.0,
-        help="From floor to ceiling.",
+        help="From floor to ceiling in metres.",
         show_default="the file's, or 3",
     ),
 ]
@@ -39,7 +39,7 @@ WallThickness = Annotated[
         metavar="M",
         min=1e-4,
         max=1000.0,
-        help="Thickness of walls for which the file gives none.",
+        help="Thickness in metres of walls for which the file gives none.",
         show_default="0.1",
     ),
 ]
@@ -81,7 +81,9 @@ Level = Annotated[
 ]
 Scale = Annotated[
     float | None,
-    typer.Option(metavar="M", min=1e-4, max=1000.0, help="Size of a pixel, for pictures."),
+    typer.Option(
+        metavar="M", min=1e-4, max=1000.0, help="Side of a pixel in metres; required for pictures."
+    ),
 ]
 WallTolerance = Annotated[
     float | None,
@@ -89,7 +91,7 @@ WallTolerance = Annotated[
         metavar="M",
         min=1e-9,
         max=1000.0,
-        help="Maximum distance by which walls are moved to meet.",
+        help="Maximum distance in metres by which walls are moved to meet.",
         show_default="the format's",
     ),
 ]
@@ -106,7 +108,7 @@ CloseGaps = Annotated[
         metavar="M",
         min=0.0,
         max=1000.0,
-        help="Close gaps in the outline up to this width with walls like those beside them.",
+        help="Close gaps in the outline, up to this width in metres, with walls like those beside.",
         show_default=f"{CLOSED_GAP_M:g}",
     ),
 ]

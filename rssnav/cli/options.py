@@ -1,5 +1,6 @@
 """Arguments and options that several commands share."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -25,6 +26,17 @@ def _check_antenna(name: str | None) -> str | None:
     if name is None or name in ANTENNAS or name.lower().endswith(".csv"):
         return name
     raise typer.BadParameter(f"{name!r} is not {', '.join(ANTENNAS)} or the path of a .csv file.")
+
+
+def _at_most(largest: int) -> Callable[[int | None], int | None]:
+    """Check of a bound that only files and kernels have: help that prints it helps nobody."""
+
+    def check(value: int | None) -> int | None:
+        if value is not None and value > largest:
+            raise typer.BadParameter(f"{value} is more than {largest}.")
+        return value
+
+    return check
 
 
 def _complete_plan(incomplete: str) -> list[str]:
@@ -157,7 +169,7 @@ MaxPaths = Annotated[
         "--max-paths",
         metavar="N",
         min=1,
-        max=2**62,
+        callback=_at_most(2**62),
         help="Maximum number of paths in the map; raises --min-power as needed.",
         show_default="no limit",
     ),
@@ -248,7 +260,13 @@ Runs = Annotated[
 ]
 Seed = Annotated[
     int,
-    typer.Option("--seed", metavar="N", min=0, max=2**63 - 1, help="Seed of the random numbers."),
+    typer.Option(
+        "--seed",
+        metavar="N",
+        min=0,
+        callback=_at_most(2**63 - 1),
+        help="Seed of the random numbers.",
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Force = Annotated[bool, typer.Option("--force", help="Recompute, and overwrite what is there.")]

@@ -82,8 +82,8 @@ def import_file(
     """Create a plan from a drawing, a venue, a robot's map or a building model.
 
     What the file does not state gets a default, marked as assumed in the plan; the report lists
-    what became of every layer, and the repairs. Where no usable plan comes out, as with gaps in the
-    outline that are too wide to close, a draft and a picture of the gaps are written instead.
+    how each layer was used, and the repairs. If no usable plan results, for example because gaps in
+    the outline are too wide to close, a draft and a picture of the gaps are written instead.
     """
     check_suffix(output, (".toml",), "--output")
     if save_layers is not None:

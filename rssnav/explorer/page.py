@@ -150,7 +150,8 @@ class Page:
         session.resume()
         if self._changes.of("building", session.plan.walls, session.settings.height_m):
             self._new_figure()
-        if self._changes.of("plan", session.plan, session.settings, session.import_report):
+        flown = session.training, session.search  # in the plan as it is, not as it was last typed
+        if self._changes.of("plan", session.plan, session.settings, session.import_report, *flown):
             self._figure.show_marks(session.plan)
             self._plan_panel.show()
             self._map_panel.show()

@@ -54,7 +54,7 @@ def _wall_assumptions(draft: Draft, options: ImportOptions) -> Iterator[Assumpti
     thin = sum(raw.thickness_m is None for raw in draft.walls)
     if bare and options.wall_material is None:
         why = f"the file names no material for {bare} of {n} drawn walls"
-        value = f"{WALL_MATERIAL}, {THICK_WALL_MATERIAL} from {THICK_M:g} m thickness on"
+        value = f"{WALL_MATERIAL}, {THICK_WALL_MATERIAL} if at least {THICK_M:g} m thick"
         yield Assumption("wall material", value, why)
     if thin and options.wall_thickness_m is None:
         why = f"the file gives {thin} of {n} drawn walls no thickness"

@@ -30,10 +30,9 @@ INTERPRETATIONS: tuple[Interpretation, ...] = (
     Interpretation(
         "Floor plans",
         "Reconstructed; only sizes, source, start, wall and door heights are the paper's.",
-        "The plans were never published. They were chosen so that the source can be reached at all "
-        "speeds, every cell has a path, and flights come out near the paper's lengths: agreement "
-        "with its table is partly a fit. Some printed flights do not exist in them; `rssnav "
-        "experiments plans` finds plans in which all do.",
+        "The plans were never published. `rssnav experiments plans` searched for plans in which "
+        "flights of the paper's lengths exist, and chose those that agree best with its table and "
+        "two of its claims: agreement with these is a fit.",
     ),
     Interpretation(
         "Position of the grid",

@@ -41,3 +41,16 @@ def test_a_direction_without_length_is_none() -> None:
 def test_axes_of_another_length_are_refused(axis: tuple[float, ...]) -> None:
     with pytest.raises(ValueError, match="expected orthogonal unit vectors"):
         Rotated(Isotropic(), axis, (0.0, 0.0, 1.0))  # pyright: ignore[reportArgumentType]
+
+
+def test_it_prints_in_a_line_and_compares_by_its_exact_axes() -> None:
+    one, other = (Rotated.towards(Isotropic(), (1.0, y, 0.0)) for y in (0.3, 0.3000001))
+    assert (
+        repr(one)
+        == repr(other)
+        == (
+            "Rotated(Isotropic(gain_db=0.0, polarisation='vertical'), "
+            "x_axis=(0.9578, 0.2873, 0), z_axis=(0, 0, 1))"
+        )
+    )
+    assert one != other

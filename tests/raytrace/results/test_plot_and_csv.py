@@ -80,7 +80,7 @@ def test_descriptions_fit_a_line(radio_map: RadioMap, flat: Scene) -> None:
     assert text.startswith("<RadioMap 8 x 6 cells of 1.5 m, ")
     assert text.endswith("from (1.2, 7.9, 0.8) at 2.4 GHz>")
     paths = trace_paths(flat, TRANSMITTER, np.array([[3.1, 6.3, 1.4]]), TraceConfig(2, 1))
-    assert repr(paths) == f"<Paths: {len(paths)} to 1 receivers, at most 3 interactions>"
+    assert repr(paths) == f"<Paths: {len(paths)} to 1 receiver, at most 3 interactions>"
     empty = trace_paths(flat, TRANSMITTER, np.array([[-9.0, 0.0, 1.0]]), TraceConfig(0, 0))
     assert repr(empty).startswith("<Paths: 0 to 0 receivers")
     assert "\n" not in text + repr(empty)

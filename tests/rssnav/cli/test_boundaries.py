@@ -6,6 +6,7 @@ The cases are made from the commands themselves, so a new option is covered as i
 from __future__ import annotations
 
 import inspect
+import re
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
@@ -86,7 +87,8 @@ def test_absurd_values(words: str, name: str, folder: Path) -> None:
     kinds, info = declared(words, name)
     if kinds & {int, float}:
         assert info.min is not None, "give the option a least value"
-        assert info.max is not None, "give the option a largest value"
+        checked = info.max is not None or info.callback is not None
+        assert checked, "give the option a largest value"
         for value in NUMBERS:
             usage_of(words, name, value)
     else:
@@ -128,6 +130,18 @@ def test_an_output_is_not_an_input(words: str, folder: Path) -> None:
     assert result.exit_code == 2, result.output
     assert "is read or written as well" in said(result.output)
     assert same.read_text(encoding="utf-8") == "kept"
+
+
+def test_a_bound_of_the_files_alone_is_checked_and_not_in_the_help() -> None:
+    for words, option in (
+        ("train", "--seed"),
+        ("dataset baselines", "--seed"),
+        ("map", "--max-paths"),
+    ):
+        assert re.search(r"\d{16}", said(run(*words.split(), "--help").output)) is None
+        result = run(*words.split(), "room.toml", option, str(2**63))
+        assert result.exit_code == 2
+        assert f"{2**63} is more than" in said(result.output)
 
 
 def test_every_parameter_that_is_a_path_is_known() -> None:

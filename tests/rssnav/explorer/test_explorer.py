@@ -298,6 +298,22 @@ def test_an_uploaded_drawing_keeps_its_name_and_shows_its_report(session, tmp_pa
     assert panel._report.object == ""
 
 
+@pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")
+def test_a_flight_begins_with_the_values_that_it_is_flown_with(session) -> None:
+    page, panel = (made := Page(session)), made._map_panel
+    x, frequency = panel._places["source_x_m"], panel._numbers["frequency_ghz"]
+    x.value = 99.0
+    frequency.value = 5.0
+    page.refresh()
+    assert "outside the outline" in session.problem
+    assert x.value == 99.0  # another coordinate may still make it valid
+    session.train(TrainingSettings("rss", episodes=1, goal_rss_dbm=-45.0))
+    page.refresh()
+    assert session.problem == ""
+    assert x.value == FLAT.source[0]
+    assert frequency.value == session.settings.frequency_hz / 1e9 == 2.4
+
+
 def test_a_reader_gets_no_more_than_its_time_and_memory() -> None:
     content = dumps_geojson(FLAT).encode()
     with pytest.raises(PlanError, match=r"not read within 0\.01 s"):
