@@ -37,7 +37,7 @@ from raytrace.solver.workers import Stop, Workers
 AT_ONCE = 16
 """Lists of the strongest paths that are kept before they are joined."""
 
-TRACER_VERSION = 9
+TRACER_VERSION = 10
 """Grows whenever the same scene would give another map."""
 
 

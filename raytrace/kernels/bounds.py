@@ -19,6 +19,7 @@ from raytrace.kernels.lanes import (
     maximum,
     minimum,
     sqrt,
+    where,
 )
 from raytrace.kernels.losses import NEGLIGIBLE
 from raytrace.kernels.unfolding import NORMAL, REFLECT_WALL, SURFACE, TYPE, Leg
@@ -167,16 +168,23 @@ def all_heights(heights: Floats, left: int, length: Lanes, height: float) -> Lan
 
 
 @jit(inline=True, fast=True)
-def largest_term(size: Lanes, cotangent: Lanes) -> Lanes:
-    """Bound on a term of the diffraction coefficient."""
-    return minimum(size * absolute(cotangent), lanes_of(0.5))
+def largest_term(size: Lanes, low: Lanes, high: Lanes) -> Lanes:
+    """Bound on a term of the diffraction coefficient between two angles, by their cotangents."""
+    largest = minimum(size * maximum(absolute(low), absolute(high)), lanes_of(0.5))
+    return where(high > low, 0.5, largest)  # a pole lies between: cotangents fall elsewhere
+
+
+@jit(inline=True)
+def least_magnitude(one: Lanes, other: Lanes) -> Lanes:
+    """Least magnitude between two numbers."""
+    return where(one * other > 0.0, minimum(absolute(one), absolute(other)), 0.0)
 
 
 @jit(inner=True, fast=True)
 def wedge_bound(
     tables: FieldTables,
     wedge: Wedge,
-    directions: tuple[FaceAngles, FaceAngles],
+    directions: tuple[FaceAngles, FaceAngles, FaceAngles],
     shadow: Floats,
     sqrt_2kl: Lanes,
     sin_beta: Lanes,
@@ -191,28 +199,33 @@ def wedge_bound(
     tables, wedge
         The materials, and the wedge.
     directions
-        Behind the edge and before it.
+        Behind the edge those of the least and of the largest angle, whose roots are the least
+        ones, and before it.
     shadow
         (COSINE_BINS + 1,) largest |1 - T'|^2 of a sheet at a cosine of incidence or above.
     sqrt_2kl, sin_beta
         sqrt(2 k L) / sqrt(sin beta), and least sine of the angle between rays and edge.
     """
-    at, incident = directions
+    low, high, incident = directions
     size = (1.0 / (2.0 * wedge.n * math.sqrt(math.pi))) / (sqrt_2kl * sqrt(sin_beta))
-    o_cosine = at.root_o * incident.root_o * sin_beta
+    o_cosine = low.root_o * incident.root_o * sin_beta
     o_face = sqrt(largest_reflectance(tables, wedge.o_slab, o_cosine))
     if wedge.is_sheet:
-        ch, sh, gh, fh = at.cos_half, at.sin_half, incident.cos_half, incident.sin_half
+        gh, fh = incident.cos_half, incident.sin_half
+        one = low.cos_half * gh, low.sin_half * fh
+        other = high.cos_half * gh, high.sin_half * fh
         row = floor(minimum(o_cosine * float(len(shadow) - 1), len(shadow) - 2.0))
         through, _ = gather_pairs1(shadow, row)
-        shadowed = minimum(2.0 * size / absolute(ch * gh + sh * fh), lanes_of(0.5))
-        reflected = minimum(2.0 * size / absolute(ch * gh - sh * fh), lanes_of(0.5))
+        at_shadow = least_magnitude(one[0] + one[1], other[0] + other[1])
+        at_reflection = least_magnitude(one[0] - one[1], other[0] - other[1])
+        shadowed = minimum(2.0 * size / at_shadow, lanes_of(0.5))
+        reflected = minimum(2.0 * size / at_reflection, lanes_of(0.5))
         amplitude = sqrt(through) * shadowed + o_face * reflected
         return amplitude * amplitude
-    n_cosine = at.root_n * incident.root_n * sin_beta
+    n_cosine = low.root_n * incident.root_n * sin_beta
     n_face = sqrt(largest_reflectance(tables, wedge.n_slab, n_cosine))
-    terms = wedge_cotangents(wedge, at, incident)
-    amplitude = largest_term(size, terms[0]) + largest_term(size, terms[1])
-    amplitude = amplitude + n_face * largest_term(size, terms[2])
-    amplitude = amplitude + o_face * largest_term(size, terms[3])
+    one, other = wedge_cotangents(wedge, low, incident), wedge_cotangents(wedge, high, incident)
+    amplitude = largest_term(size, one[0], other[0]) + largest_term(size, other[1], one[1])
+    amplitude = amplitude + n_face * largest_term(size, one[2], other[2])
+    amplitude = amplitude + o_face * largest_term(size, other[3], one[3])
     return amplitude * amplitude

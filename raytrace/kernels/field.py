@@ -6,6 +6,7 @@ alone (docs/theory.md, eqs. 10-13). Eight rays that meet the same walls are comp
 
 from typing import NamedTuple
 
+from raytrace.arrays import Floats
 from raytrace.kernels.building import Building
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field_tables import FieldTables, both_reflections, slab_lookup
@@ -13,21 +14,26 @@ from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
     absolute,
+    all_false,
     any_of,
     complex_of,
     copysign,
     floor,
+    imag_of,
     lanes_of,
     load,
     maximum,
     minimum,
+    real_of,
     sqrt,
+    store,
     where,
     where_complex,
 )
 from raytrace.kernels.plan_view import in_building, slabs_at
 from raytrace.kernels.unfolding import (
     DISTANCE,
+    FIRST,
     NORMAL,
     PASS_PARTIAL,
     REFLECT_PARTIAL,
@@ -109,38 +115,26 @@ def apply_bounces(ray: Ray, storeys: Lanes, wave: Wave) -> Wave:
     return Wave(v, h, sine, count)
 
 
-@jit(inner=True, fast=True)
-def transmit(
-    building: Building,
-    tables: FieldTables,
-    leg: Leg,
-    k: int,
-    ray: Ray,
-    heights: tuple[Lanes, float],
-    wave: Wave,
-) -> Wave:
-    """Field behind the wall of interaction k (docs/theory.md, eqs. 28-30)."""
+@jit(inline=True, fast=True)
+def wall_coefficients(
+    table: Floats, rows: int, leg: Leg, k: int, cos_elevation: Lanes, seen: Floats
+) -> tuple[ComplexLanes, ComplexLanes]:
+    """`field_tables.slab_lookup` for the wall of interaction k, once for all that are alike.
+
+    `seen` is scratch that holds what was looked up for earlier interactions of the leg.
+    """
+    first = leg.types[k, FIRST]
+    row = seen[first]
+    if first < k:
+        return complex_of(load(row[0]), load(row[1])), complex_of(load(row[2]), load(row[3]))
+    cosine = absolute(load(leg.interactions[k, NORMAL])) * cos_elevation
     slab = lanes_of(float(leg.types[k, SURFACE]))
-    z_root, offset = heights
-    z = z_root + ray.slope * load(leg.interactions[k, DISTANCE])
-    if leg.types[k, TYPE] == PASS_PARTIAL:
-        beside = in_building(z + offset, building.height)
-        slab = slabs_at(building.plan, leg.types[k, SURFACE], beside)
-    solid = slab >= 0.0
-    if not any_of(solid):
-        return wave
-    wave = apply_bounces(ray, z / building.height, wave)
-    normal = load(leg.interactions[k, NORMAL])
-    cosine = absolute(normal) * ray.cos_elevation
-    tm, mix = slab_lookup(tables.transmission, tables.slab_rows, maximum(slab, 0.0), cosine)
-    a, b = load(leg.interactions[k, SKEW]), -normal * wave.sin_elevation
-    t = (wave.v * a + wave.h * b) * mix
-    return Wave(
-        where_complex(solid, tm * wave.v + t * a, wave.v),
-        where_complex(solid, tm * wave.h + t * b, wave.h),
-        wave.sin_elevation,
-        wave.bounce_count,
-    )
+    tm, mix = slab_lookup(table, rows, slab, cosine)
+    store(row[0], real_of(tm))
+    store(row[1], imag_of(tm))
+    store(row[2], real_of(mix))
+    store(row[3], imag_of(mix))
+    return tm, mix
 
 
 @jit(inline=True, fast=True)
@@ -152,9 +146,10 @@ def propagate(
     length: Lanes,
     ray: Ray,
     heights: tuple[Lanes, float],
+    seen: Floats,
     wave: Wave,
 ) -> Wave:
-    """Propagate a field along legs.
+    """Propagate a field along legs (docs/theory.md, eqs. 10-13 and 28-30).
 
     Parameters
     ----------
@@ -165,26 +160,38 @@ def propagate(
     ray, heights
         Their slopes; the unfolded heights at their roots, and the offset of the heights at which
         partial walls are looked up [m].
+    seen
+        (>= n, 4, 8) scratch for coefficients of walls.
     wave
         The field at the root; the one at the end is returned.
     """
     (z_root, offset), inv_height = heights, 1.0 / building.height
     for k in range(n):
         kind = leg.types[k, TYPE]
-        if kind >= PASS_PARTIAL:
-            if len(tables.transmission) > 0:
-                wave = transmit(building, tables, leg, k, ray, heights, wave)
+        passes = kind >= PASS_PARTIAL
+        table = tables.transmission if passes else tables.reflection
+        if len(table) == 0:
             continue
         z = z_root + ray.slope * load(leg.interactions[k, DISTANCE])
+        normal, solid = load(leg.interactions[k, NORMAL]), all_false()
+        if kind in (PASS_PARTIAL, REFLECT_PARTIAL):
+            beside = in_building(z + offset, building.height)
+            slab = slabs_at(building.plan, leg.types[k, SURFACE], beside)
+            solid = slab >= 0.0
+            if passes and not any_of(solid):
+                continue
+            cosine = absolute(normal) * ray.cos_elevation
+            tm, mix = slab_lookup(table, tables.slab_rows, maximum(slab, 0.0), cosine)
+        else:
+            tm, mix = wall_coefficients(table, tables.slab_rows, leg, k, ray.cos_elevation, seen)
         wave = apply_bounces(ray, z * inv_height, wave)
-        slab = lanes_of(float(leg.types[k, SURFACE]))
-        if kind == REFLECT_PARTIAL:
-            z = in_building(z + offset, building.height)
-            slab = maximum(slabs_at(building.plan, leg.types[k, SURFACE], z), 0.0)
-        normal = load(leg.interactions[k, NORMAL])
-        cosine = absolute(normal) * ray.cos_elevation
-        tm, mix = slab_lookup(tables.reflection, tables.slab_rows, slab, cosine)
         a, b = load(leg.interactions[k, SKEW]), -normal * wave.sin_elevation
         t = (wave.v * a + wave.h * b) * mix
-        wave = Wave(t * a - tm * wave.v, tm * wave.h - t * b, wave.sin_elevation, wave.bounce_count)
+        if passes:
+            v, h = tm * wave.v + t * a, tm * wave.h + t * b
+            if kind == PASS_PARTIAL:
+                v, h = where_complex(solid, v, wave.v), where_complex(solid, h, wave.h)
+        else:
+            v, h = t * a - tm * wave.v, tm * wave.h - t * b
+        wave = Wave(v, h, wave.sin_elevation, wave.bounce_count)
     return apply_bounces(ray, (z_root + ray.slope * length) * inv_height, wave)

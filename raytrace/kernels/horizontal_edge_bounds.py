@@ -168,13 +168,17 @@ def largest_power(
     return amplitude * amplitude
 
 
-def bounds_over_edge(heights: EdgeHeights, h: Floats, length: Floats, sin_beta: Floats) -> Floats:
+def bounds_over_edge(
+    heights: EdgeHeights, left: Ints, h: Floats, length: Floats, sin_beta: Floats
+) -> Floats:
     """Bound the power at some distance behind a horizontal edge, and at any larger one.
 
     Parameters
     ----------
     heights
         Heights of paths, and what these meet.
+    left
+        (n,) reflections left behind n ways to the edge.
     h
         (n,) distances of the transmitter's images from the edge [m], negative on the other side
         than the receivers.
@@ -186,20 +190,21 @@ def bounds_over_edge(heights: EdgeHeights, h: Floats, length: Floats, sin_beta: 
     Returns
     -------
     ndarray
-        (n, max_reflections + 1, DISTANCES + 1) by the reflections left to floor and ceiling, and by
-        the interval of the distance, of which the last is not used: the power, as a fraction of
-        `EdgeHeights.most`, over the squared length of the path [1/m^2].
+        (n, max_reflections + 1, DISTANCES + 1) by the reflections at floor and ceiling, as many as
+        are left or fewer, and by the interval of the distance, of which the last is not used: the
+        power, as a fraction of `EdgeHeights.most`, over the squared length of the path [1/m^2].
     """
     n_images = len(heights.bounces)
     found = np.zeros((len(h), int(heights.bounces[-1]) + 1, DISTANCES + 1))
     scratch = np.empty((n_images, DISTANCES, 7)), np.empty((n_images, DISTANCES))
-    write_bounds_over_edge(heights, h, length, np.maximum(sin_beta, 1e-6), scratch, found)
+    write_bounds_over_edge(heights, left, h, length, np.maximum(sin_beta, 1e-6), scratch, found)
     return found
 
 
 @jit()
 def write_bounds_over_edge(
     heights: EdgeHeights,
+    left: Ints,
     h: Floats,
     length: Floats,
     sin_beta: Floats,
@@ -207,22 +212,22 @@ def write_bounds_over_edge(
     found: Floats,
 ) -> None:
     """Set `found` as in `bounds_over_edge`; `scratch` is for rays behind it, and what they keep."""
-    (rays, kept), n_left = scratch, found.shape[1]
+    rays, kept = scratch
     write_rays_behind(heights, rays)
     for p in range(len(h)):
         for k in range(DISTANCES):
             total = max(length[p] + start_of_bin(k), 1e-9)
-            for b in range(len(heights.bounces)):
+            for b in range(2 * left[p] + 1):
                 sine = sin_beta[p] * rays[b, k, SINE]
                 kept[b, k] = surfaces_keep(heights, sine, heights.bounces[b])
                 kept[b, k] /= heights.most * total * total
-        write_pairs(heights, h[p], sin_beta[p], (rays, kept), found[p])
-        for left in range(n_left):
+        write_pairs(heights, h[p], sin_beta[p], (rays, kept), found[p, : left[p] + 1])
+        for bounces in range(left[p] + 1):
             for k in range(DISTANCES - 1, -1, -1):
                 if k + 1 < DISTANCES:
-                    found[p, left, k] = max(found[p, left, k], found[p, left, k + 1])
-                if left > 0:
-                    found[p, left, k] = max(found[p, left, k], found[p, left - 1, k])
+                    found[p, bounces, k] = max(found[p, bounces, k], found[p, bounces, k + 1])
+                if bounces > 0:
+                    found[p, bounces, k] = max(found[p, bounces, k], found[p, bounces - 1, k])
 
 
 @jit(inner=True)
@@ -234,16 +239,16 @@ def write_pairs(
     found: Floats,
 ) -> None:
     """Set the bounds of one way (max_reflections + 1, DISTANCES + 1) by reflections of a pair."""
-    rays, kept = behind
-    for a in range(len(heights.bounces)):
+    (rays, kept), n_images = behind, 2 * len(found) - 1
+    for a in range(n_images):
         rise = heights.before[a]
         across = max(math.hypot(h, rise), 1e-9)
         before = half_angle(rise, abs(h)), 1.0 / across, math.sqrt(abs(h) / across)
         power = surfaces_keep(heights, sin_beta * abs(rise) / across, heights.bounces[a])
-        for b in range(len(heights.bounces)):
-            left = heights.bounces[a] + heights.bounces[b]
-            if left >= len(found):
+        for b in range(n_images):
+            bounces = heights.bounces[a] + heights.bounces[b]
+            if bounces >= len(found):
                 break
             for k in range(DISTANCES):
                 here = largest_power(heights, h < 0.0, before, rays[b, k], sin_beta)
-                found[left, k] = max(found[left, k], here * power * kept[b, k])
+                found[bounces, k] = max(found[bounces, k], here * power * kept[b, k])

@@ -39,10 +39,11 @@ def propagate_not_inlined(
     length: Lanes,
     ray: Ray,
     heights: tuple[Lanes, float],
+    seen: Floats,
     wave: Wave,
 ) -> Wave:
     """`field.propagate`, not inlined."""
-    return propagate(building, tables, leg, n, length, ray, heights, wave)
+    return propagate(building, tables, leg, n, length, ray, heights, seen, wave)
 
 
 @jit(fast=True, inner=True)
@@ -72,10 +73,10 @@ def edge_gain(
     building, edge, frame = geometry.building, path.edge, path.edge.frame
     ray_in = new_ray(building, tables, legs.slope_in, path.bounces_in)
     ray_out = new_ray(building, tables, legs.slope_out, path.bounces_out)
-    heights = lanes_of(geometry.transmitter[2]), offsets[0]
+    heights, seen = (lanes_of(geometry.transmitter[2]), offsets[0]), work.workspace.coefficients
     wave = launch(tables, legs.departure, ray_in.sin_elevation)
     wave = propagate_not_inlined(
-        building, tables, work.leg_in, legs.n_in, legs.length_in, ray_in, heights, wave
+        building, tables, work.leg_in, legs.n_in, legs.length_in, ray_in, heights, seen, wave
     )
     # direction of arrival at the edge, from the image of the transmitter in the last beam
     x, y = from_frame(frame, path.u)
@@ -98,7 +99,7 @@ def edge_gain(
     v, h = parallel * along - normal * across, parallel * across + normal * along
     wave, heights = Wave(v, h, ray_out.sin_elevation, lanes_of(0.0)), (lanes_of(edge.z), offsets[1])
     wave = propagate_not_inlined(
-        building, tables, work.leg_out, legs.n_out, legs.length_out, ray_out, heights, wave
+        building, tables, work.leg_out, legs.n_out, legs.length_out, ray_out, heights, seen, wave
     )
     total = path.before + path.after
     product = path.before * path.after

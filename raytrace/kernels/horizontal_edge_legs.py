@@ -126,10 +126,11 @@ class EdgeWorkspace(NamedTuple):
 def new_edge_workspace(max_reflections: int, beams: HorizontalEdgeBeams) -> EdgeWorkspace:
     """Working arrays for the paths over an edge."""
     strips = beams.strips
+    leg_in, leg_out = new_leg(beams.tree.link[beams.images.beam]), new_leg(strips.link)
     return EdgeWorkspace(
-        new_workspace(max_reflections),
-        new_leg(beams.tree.link[beams.images.beam]),
-        new_leg(strips.link),
+        new_workspace(max_reflections, max(len(leg_in.types), len(leg_out.types))),
+        leg_in,
+        leg_out,
         np.empty((len(strips.link), 2, WIDTH)),
         np.empty((2 * max_reflections + 1, WIDTH)),
         np.empty((max_reflections + 1, WIDTH)),

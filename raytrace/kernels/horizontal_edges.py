@@ -199,7 +199,8 @@ def path_bound(
     sin_beta = across_edge(path) / total
     product = path.before * path.after / total
     sqrt_2kl = sqrt((4.0 * math.pi / tables.wavelength) * product * sin_beta)
-    directions = angles_at_edge(path, work.workspace.rows)
+    at, incident = angles_at_edge(path, work.workspace.rows)
+    directions = at, at, incident
     bound = wedge_bound(tables, path.edge.wedge, directions, shadow, sqrt_2kl, sin_beta)
     sine_in = lanes_of(abs(path.edge.z - path.z_in)) / path.before
     sine_out = absolute(path.z_out - path.edge.z) / path.after

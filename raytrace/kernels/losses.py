@@ -9,7 +9,6 @@ from typing import NamedTuple
 from raytrace.arrays import Floats
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.edge_losses import Directions, EdgeWays, largest_amplitude
-from raytrace.kernels.horizontal_edge_bounds import distance_bin
 from raytrace.kernels.plan_view import PlanView, cross
 
 COSINE_BINS = 64
@@ -63,9 +62,14 @@ class LossLimit(NamedTuple):
         strength, that is fraction over squared length [1/m^2]; the sum of strengths from here to
         the last way of as many reflections; its number plus 1; and the largest length of them [m].
     ways
-        (n, 5) ways from the transmitter to a horizontal edge: wall reflections, shortest length
-        [m], largest fraction of the power behind the edge, and the interval of the sines between
-        their directions and the edge's normal in the plan view; n = 0 for other roots.
+        (n, 6) ways from the transmitter to a horizontal edge: wall reflections, shortest length
+        [m], largest fraction of the power behind the edge, where along the edge the transmitter's
+        image is, and the interval of the edge that the way meets [m]; n = 0 for other roots.
+    across
+        (n, max_reflections + 1, 2) for these ways, by the reflections left to floor and ceiling:
+        least and largest distance of the images from the edge's line [m].
+    rises
+        (max_reflections + 1,) most that a path rises behind a horizontal edge [m], the same way.
     over_edge
         (n, max_reflections + 1, DISTANCES + 1) for these ways, see `bounds_over_edge`.
     further
@@ -88,6 +92,8 @@ class LossLimit(NamedTuple):
     edge_ways: EdgeWays
     ranks: Floats
     ways: Floats
+    across: Floats
+    rises: Floats
     over_edge: Floats
     further: Floats
 
@@ -308,85 +314,3 @@ def amplitude_over_edge(
 def cosine_bin(cosine: float) -> int:
     """Interval that a cosine of incidence lies in, or the one below if rounding could tell."""
     return min(max(int(cosine * COSINE_BINS - ROUNDING), 0), COSINE_BINS - 1)
-
-
-@jit(inner=True)
-def along_edge(low: float, high: float, distance: float, rise: float) -> tuple[float, float]:
-    """Bounds on the cosine between rays and a horizontal edge.
-
-    Parameters
-    ----------
-    low, high
-        The same in the plan view.
-    distance, rise
-        Shortest horizontal length of the rays, and most that they rise over it [m].
-    """
-    cos_elevation = distance / math.sqrt(distance * distance + rise * rise)
-    least = low * cos_elevation if low > 0.0 else low
-    largest = high * cos_elevation if high < 0.0 else high
-    return least - ROUNDING, largest + ROUNDING
-
-
-@jit(inline=True)
-def nearest_zero(interval: tuple[float, float]) -> float:
-    """Least magnitude within an interval."""
-    low, high = interval
-    return 0.0 if low * high <= 0.0 else min(abs(low), abs(high))
-
-
-@jit(inner=True)
-def has_strong_way(
-    limits: Limits,
-    order: int,
-    entry: int,
-    kept: tuple[float, float],
-    slopes: tuple[float, float],
-    left_out: Floats,
-) -> bool:
-    """`is_strong` for a beam from a horizontal edge, by the ways to it whose direction fits.
-
-    A diffracted ray makes the same angle with the edge as the arriving one.
-
-    Parameters
-    ----------
-    limits, order, entry, left_out
-        See `is_strong`.
-    kept
-        Its fraction and distance.
-    slopes
-        Of its rays, along the edge over away from it.
-    """
-    loss, (fraction, distance) = limits.loss, kept
-    if not loss.is_active:
-        return True
-    power, least = fraction * loss.power_at_1m, loss.least[entry]
-    missing, k = 0.0, 0
-    low = slopes[0] / math.hypot(1.0, slopes[0])
-    high = slopes[1] / math.hypot(1.0, slopes[1])
-    off = distance / math.hypot(1.0, nearest_zero(slopes))
-    interval = distance_bin(off)
-    while k < len(loss.ways):
-        reflections, length = loss.ways[k, 0], loss.ways[k, 1]
-        left = int(loss.most_reflections - reflections - order)
-        if left < 0:
-            break
-        rest, skips = all_from(loss, k, fraction, distance, least)
-        if skips:
-            missing += rest * loss.further[left]
-            k = int(loss.ranks[k, 2])
-            continue
-        k += 1
-        total, rise = max(length + distance, 1e-9), (left + 1.0) * loss.height
-        free, nearest = power * loss.ways[k - 1, 2] / (total * total), max(length + off, 1e-9)
-        over = loss.over_edge[k - 1, left, interval] * nearest * nearest
-        arriving = free * min(over, 1.0)
-        if arriving >= NEGLIGIBLE * least:
-            before = along_edge(loss.ways[k - 1, 3], loss.ways[k - 1, 4], length, rise)
-            behind = along_edge(low, high, distance, rise)
-            if before[0] > behind[1] or behind[0] > before[1]:
-                continue
-        missing += arriving * loss.further[left]
-        if (arriving if loss.is_alone else missing) >= least:
-            return True
-    left_out[0] += missing
-    return False

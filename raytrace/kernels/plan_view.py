@@ -3,6 +3,8 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from raytrace.arrays import Bools, Floats, Ints
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import (
@@ -90,6 +92,34 @@ def mirrored(x: float, y: float, line: Floats) -> tuple[float, float]:
     """Image of a point in a line (n_x, n_y, d)."""
     t = 2.0 * (line[0] * x + line[1] * y - line[2])
     return x - t * line[0], y - t * line[1]
+
+
+@jit(inner=True)
+def to_segment(x: float, y: float, one: Floats, other: Floats) -> float:
+    """Squared distance of a point from a segment between two others [m^2]."""
+    ax, ay, dx, dy = one[0], one[1], other[0] - one[0], other[1] - one[1]
+    t = ((x - ax) * dx + (y - ay) * dy) / max(dx * dx + dy * dy, 1e-30)
+    t = min(max(t, 0.0), 1.0)
+    across, along = x - ax - t * dx, y - ay - t * dy
+    return across * across + along * along
+
+
+@jit()
+def distances_to_cells(view: PlanView, one: Floats, other: Floats) -> Floats:
+    """Shortest distances (n_cells,) [m] of the edges of cells from a segment that crosses none.
+
+    `one` and `other` are its ends [m], equal for a point.
+    """
+    found = np.empty(len(view.cell_edges) - 1)
+    for cell in range(len(found)):
+        least = math.inf
+        for e in range(view.cell_edges[cell], view.cell_edges[cell + 1]):
+            start, end = view.ends[e, :2], view.ends[e, 2:]
+            least = min(least, to_segment(one[0], one[1], start, end))
+            least = min(least, to_segment(other[0], other[1], start, end))
+            least = min(least, to_segment(start[0], start[1], one, other))
+        found[cell] = math.sqrt(least)
+    return found
 
 
 @jit(inline=True)

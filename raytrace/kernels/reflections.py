@@ -110,7 +110,8 @@ def sum_reflections(
             if any_of(weight > 0.0):
                 ray = new_ray(building, tables, slope, geometry.image_bounces[k])
                 wave = launch(tables, (ux, uy), ray.sin_elevation)
-                wave = propagate(building, tables, leg, n, length, ray, (z_root, offset), wave)
+                heights, seen = (z_root, offset), workspace.coefficients
+                wave = propagate(building, tables, leg, n, length, ray, heights, seen, wave)
                 distance = length * ray.sec_elevation
                 phase = phasor(tables.cis, distance * (1.0 / wavelength))
                 spreading = (wavelength / (4.0 * math.pi)) / distance

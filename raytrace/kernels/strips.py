@@ -36,13 +36,12 @@ from raytrace.kernels.losses import (
     PASSES,
     Incidence,
     Limits,
-    has_strong_way,
     incidence,
     largest_fraction,
-    nearest_zero,
 )
 from raytrace.kernels.plan_view import PlanView
 from raytrace.kernels.rows import copy_row, enlarged, resized
+from raytrace.kernels.strip_losses import Spread, has_strong_way, nearest_zero
 from raytrace.kernels.turns import Heights, turns_at, turns_from_edge, turns_needed
 
 STEEPEST = 1e5
@@ -254,30 +253,31 @@ def add_child(
     first[n + 1] = first[n] + corners
 
 
-@jit(inline=True)
-def slopes_of(rays: Floats, n: int) -> tuple[float, float]:
-    """Least and largest slope m of the first n rays."""
+@jit(inner=True)
+def spread_on(
+    view: PlanView, frame: Floats, e: int, rays: Floats, n: int
+) -> tuple[Incidence, Spread]:
+    """Incidence on edge e of a beam, whose rays that meet it have n corners, and their spread."""
     low = high = rays[0, 1]
+    start = end = rays[0, 0]
     for k in range(1, n):
         low, high = min(low, rays[k, 1]), max(high, rays[k, 1])
-    return low, high
-
-
-@jit(inner=True)
-def incidence_of_strip(
-    view: PlanView, frame: Floats, e: int, slopes: tuple[float, float], limits: Limits
-) -> Incidence:
-    """Incidence on edge e of a beam whose rays have slopes in an interval."""
-    if not limits.loss.is_active:
-        return Incidence(0.0, 0.0, 1.0)
-    low, high = slopes
+        start, end = min(start, rays[k, 0]), max(end, rays[k, 0])
     nx, ny = view.plane[e, 0], view.plane[e, 1]
     normal = (frame[0] * nx + frame[1] * ny, frame[3] * nx + frame[4] * ny)
-    met = incidence(0.0, normal, (low, 1.0), (high, 1.0))
-    _, h1 = in_frame(frame, view.ends[e, 0], view.ends[e, 1])
+    x1, h1 = in_frame(frame, view.ends[e, 0], view.ends[e, 1])
     _, h2 = in_frame(frame, view.ends[e, 2], view.ends[e, 3])
-    length = max(min(h1, h2), 0.0) * math.hypot(1.0, nearest_zero(slopes))
-    return Incidence(length, met.least, met.largest)
+    off, least, away = normal[0] * x1 + normal[1] * h1, max(min(h1, h2), 0.0), max(h1, h2)
+    for k in range(n):
+        across = abs(normal[0] * rays[k, 1] + normal[1])
+        away = min(away, abs(off - normal[0] * rays[k, 0]) / max(across, 1e-12))
+    away = max(away, least)
+    met = incidence(0.0, normal, (low, 1.0), (high, 1.0))
+    to_line = min(abs(off - normal[0] * start), abs(off - normal[0] * end))
+    along = away * math.hypot(1.0, nearest_zero((low, high)))
+    nearest = max(to_line / max(met.largest, 1e-9), along)
+    spread = Spread((low, high), (start, end), away, rays, n)
+    return Incidence(nearest, met.least, met.largest), spread
 
 
 @jit(inner=True)
@@ -304,8 +304,7 @@ def split_strip(
         corners = through_edge(view, tree, i, e, work, out)
         if corners == 0:
             continue
-        slopes = slopes_of(out, corners)
-        met = incidence_of_strip(view, frame, e, slopes, limits)
+        met, spread = spread_on(view, frame, e, out, corners)
         for how in (PASSES, IS_MIRRORED):
             possible = may_enter(link, i, view.beyond[e]) if how == 0 else view.profile[e] >= 0
             if not possible:
@@ -317,15 +316,14 @@ def split_strip(
                 continue
             kept = frame[FRACTION] * largest_fraction(limits, view, e, how, met, order)
             into = int(view.twin[e]) if how == PASSES else e
-            distance = met.nearest
-            if has_strong_way(limits, order + how, into, (kept, distance), slopes, left_out):
+            if has_strong_way(limits, order + how, into, (kept, met.nearest), spread, left_out):
                 add_child(view, tree, (i, n, e), how, corners, out, kept)
                 link[n, TURNS_UP], tree.frame[n, Z_UP] = turns[0], turns[1]
                 link[n, TURNS_DOWN], tree.frame[n, Z_DOWN] = turns[2], turns[3]
                 n += 1
         if link[i, TRANSMITTED] < limits.max_transmissions:
             kept = frame[FRACTION] * largest_fraction(limits, view, e, IS_TRANSMITTED, met, order)
-            n = transmit_strip(view, tree, (i, n, e), scratch, (limits, met, kept))
+            n = transmit_strip(view, tree, (i, n, e), scratch, (limits, kept))
     return n
 
 
@@ -335,14 +333,14 @@ def transmit_strip(
     tree: StripTree,
     place: tuple[int, int, int],
     scratch: tuple[Floats, Floats, Floats],
-    loss: tuple[Limits, Incidence, float],
+    loss: tuple[Limits, float],
 ) -> int:
     """Write the beams that go through a solid wall; return the next row.
 
     `place` is as for `add_child`, `scratch` for `split_strip`; `loss` holds limits, incidence and
     fraction of the power for `losses.is_strong`.
     """
-    (i, n, e), (work, out, left_out), (limits, met, kept) = place, scratch, loss
+    (i, n, e), (work, out, left_out), (limits, kept) = place, scratch, loss
     order = int(tree.link[i, ORDER])
     for k in range(view.behind_first[e], view.behind_first[e + 1]):
         f = view.behind[k]
@@ -351,8 +349,8 @@ def transmit_strip(
         corners = between(tree.frame[i], back, corners, work, out)
         if corners == 0 or not may_enter(tree.link, i, int(view.cell_of[f])):
             continue
-        at, slopes = (kept, met.nearest), slopes_of(out, corners)
-        if has_strong_way(limits, order, int(f), at, slopes, left_out):
+        met, spread = spread_on(view, tree.frame[i], e, out, corners)
+        if has_strong_way(limits, order, int(f), (kept, met.nearest), spread, left_out):
             add_child(view, tree, (i, n, f), IS_TRANSMITTED, corners, out, kept)
             n += 1
     return n

@@ -12,7 +12,17 @@ import numpy as np
 from raytrace.arrays import Floats, Int32s, Ints
 from raytrace.kernels.beams import CELL, EDGE, IMAGE_X, IMAGE_Y, INTERACTIONS, PARENT, REFLECTED
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.lanes import WIDTH, Lanes, lanes_of, load, maximum, sqrt, store
+from raytrace.kernels.lanes import (
+    WIDTH,
+    Lanes,
+    absolute,
+    all_of,
+    lanes_of,
+    load,
+    maximum,
+    sqrt,
+    store,
+)
 from raytrace.kernels.plan_view import WALL, PlanView, cross
 
 REFLECT_WALL, REFLECT_PARTIAL, PASS_PARTIAL, PASS_WALL = 0, 1, 2, 3
@@ -23,9 +33,10 @@ DISTANCE, SKEW, NORMAL, POINT_X, POINT_Y = range(5)
 """Columns of `Leg.interactions`: horizontal distance from the root [m]; sine and cosine of the
 plan-view direction against the wall's normal; the point [m]."""
 
-TYPE, SURFACE, OUTDOORS = range(3)
+TYPE, SURFACE, OUTDOORS, FIRST = range(4)
 """Columns of `Leg.types`: one of the four above; the slab (full wall) or the profile; whether the
-leg is outdoors before the interaction. The row after the last one holds that of the end."""
+leg is outdoors before the interaction, where the row after the last one holds that of the end; and
+the first interaction of the leg that has the same coefficients at any height, or it itself."""
 
 NEAREST_M = 1e-9
 """Shortest horizontal leg [m]: a receiver straight above the transmitter is moved this far off."""
@@ -40,7 +51,7 @@ class Leg(NamedTuple):
         (n + 1, 5, 8) float64, see `DISTANCE` and its neighbours; the last row holds the distance of
         the end.
     types
-        (n + 1, 3) int64, see `TYPE`, `SURFACE` and `OUTDOORS`.
+        (n + 1, 4) int64, see `TYPE` and its neighbours.
     """
 
     interactions: Floats
@@ -50,7 +61,7 @@ class Leg(NamedTuple):
 def new_leg(link: Int32s) -> Leg:
     """Legs, uninitialised, with capacity for the interactions of any of the beams."""
     n = max_interactions(link) + 1
-    return Leg(np.empty((n, 5, WIDTH)), np.empty((n, 3), np.int64))
+    return Leg(np.empty((n, 5, WIDTH)), np.empty((n, 4), np.int64))
 
 
 def max_interactions(link: Int32s) -> int:
@@ -130,7 +141,24 @@ def unfold(
         store(leg.interactions[k, POINT_X], x)
         store(leg.interactions[k, POINT_Y], y)
         leg.types[k, TYPE], leg.types[k, SURFACE] = type_and_surface(view, e, passed)
+    mark_equal(leg, n)
     return n, length, ux, uy
+
+
+@jit(inline=True)
+def mark_equal(leg: Leg, n: int) -> None:
+    """Set `FIRST` of n interactions: walls of one slab, met at the same angle in the plan view."""
+    for k in range(n):
+        first, kind = k, leg.types[k, TYPE]
+        normal = absolute(load(leg.interactions[k, NORMAL]))
+        for j in range(k if kind in (REFLECT_WALL, PASS_WALL) else 0):
+            if leg.types[j, TYPE] != kind or leg.types[j, SURFACE] != leg.types[k, SURFACE]:
+                continue
+            other = absolute(load(leg.interactions[j, NORMAL]))
+            if leg.types[j, FIRST] == j and all_of((normal <= other) & (normal >= other)):
+                first = j
+                break
+        leg.types[k, FIRST] = first
 
 
 @jit(inline=True)

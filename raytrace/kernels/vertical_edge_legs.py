@@ -130,7 +130,7 @@ def angles_of(legs: LegsIn, p: int) -> FaceAngles:
 
 def leg_bytes(link: Int32s) -> int:
     """Size of a row of `LegsIn` where the legs are those of some beams."""
-    return 15 * 8 + (max_interactions(link) + 1) * (5 * WIDTH + 3) * 8
+    return 15 * 8 + (max_interactions(link) + 1) * (5 * WIDTH + 4) * 8
 
 
 def legs_to_edge(
@@ -166,7 +166,7 @@ def legs_to_edge(
         np.empty(n, np.bool_),
         np.empty((n, 7)),
         np.empty((n, n_max + 1, 5, WIDTH)),
-        np.empty((n, n_max + 1, 3), np.int64),
+        np.empty((n, n_max + 1, 4), np.int64),
     )
     kept = fill_legs(view, tree, beams, weight, edge, legs, guard)
     columns: Any = legs

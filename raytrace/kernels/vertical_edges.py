@@ -13,9 +13,6 @@ from raytrace.arrays import Floats
 from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER
 from raytrace.kernels.blocks import Block, next_block
 from raytrace.kernels.bounds import (
-    LENGTHS,
-    all_from,
-    at_one_metre,
     image_bound,
     leg_bound,
 )
@@ -51,7 +48,13 @@ from raytrace.kernels.validity import (
     validity_weight,
     walls_met,
 )
-from raytrace.kernels.vertical_edge_bounds import EdgeBounds, pair_bound
+from raytrace.kernels.vertical_edge_bounds import (
+    BlockBounds,
+    EdgeBounds,
+    bounds_of_block,
+    next_legs,
+    pair_bound,
+)
 from raytrace.kernels.vertical_edge_legs import (
     LegsIn,
     LegsOut,
@@ -70,7 +73,6 @@ from raytrace.kernels.workspace import (
     count_path,
     has_threshold,
     least_powers,
-    leave_out,
 )
 
 
@@ -185,12 +187,13 @@ def pair_gain(
     bounces: int,
     offset: float,
     n_transmissions: Lanes,
+    seen: Floats,
 ) -> tuple[ComplexLanes | MatrixLanes, Lanes]:
     """Gains of paths with some transmissions, without the common factor, and their lengths [m].
 
     With every length its horizontal part over cos_el, and sin beta = cos_el, the spreading factor
     1 / (sqrt(s s' (s + s')) sin beta) is sqrt(cos_el) over the root of the horizontal parts
-    (docs/theory.md, eqs. 16-20).
+    (docs/theory.md, eqs. 16-20). `seen` is scratch, see `field.propagate`.
     """
     building, out = geometry.building, pair.out
     z_root = lanes_of(geometry.transmitter[2])
@@ -198,7 +201,7 @@ def pair_gain(
     root = sqrt(ray.cos_elevation)
     wave = launch(tables, pair.departure, ray.sin_elevation)
     heights, length_in = (z_root, offset), lanes_of(pair.length_in)
-    wave = propagate(building, tables, pair.leg_in, pair.n_in, length_in, ray, heights, wave)
+    wave = propagate(building, tables, pair.leg_in, pair.n_in, length_in, ray, heights, seen, wave)
     field = diffracted(
         tables,
         pair.edge.wedge,
@@ -210,7 +213,7 @@ def pair_gain(
     )
     wave = Wave(field[0], field[1], wave.sin_elevation, wave.bounce_count)
     heights = z_root + slope * pair.length_in, offset
-    wave = propagate(building, tables, out.leg, out.n, out.length, ray, heights, wave)
+    wave = propagate(building, tables, out.leg, out.n, out.length, ray, heights, seen, wave)
     distance = pair.total * ray.sec_elevation
     phase = phasor(tables.cis, distance * (1.0 / tables.wavelength))
     amplitude = receive(tables, wave, out.arriving)
@@ -249,8 +252,9 @@ def add_pair(
             one = 1.0, lanes_of(1.0)
             weight = apply_power_threshold(collector, workspace, least, of_image, weight, one)
         if any_of(weight > 0.0):
+            seen = workspace.coefficients
             gain, distance = pair_gain(
-                geometry, tables, pair, slope, bounces, offset, n_transmissions
+                geometry, tables, pair, slope, bounces, offset, n_transmissions, seen
             )
             gain = gain * common
             count_path(workspace, pair.order + bounces, weight)
@@ -289,7 +293,7 @@ def sum_vertical_edge(
         Added to.
     """
     edge, legs, hits = beams.edge, beams.legs, beams.hits
-    at_1m, is_bounded = at_one_metre(tables) * bounds.most, has_threshold(collector)
+    is_bounded = has_threshold(collector)
     first = int(np.int64(0))  # a literal would be compiled as a type of its own
     while first < len(hits.pair) and not is_stopped(collector.guard):
         block = next_block(geometry, hits, first, workspace)
@@ -302,26 +306,28 @@ def sum_vertical_edge(
         if is_bounded:
             bound_out = leg_bound(geometry, tables, leg, out.n, out.length, out.order)
             bound_out = minimum(bound_out, beams.tree.beam[block.beam, FRACTION])
+        whole = BlockBounds(out.angles, out.angles, out.length, bound_out, weakest)
+        if is_bounded:
+            whole = bounds_of_block(whole, workspace.rows)
         bundle, p = empty_bundle(tables), int(np.int64(0))
-        while p < len(legs.order):
-            left = geometry.max_reflections - out.order - int(legs.order[p])
-            if left < 0 or is_stopped(collector.guard):
-                break
-            if len(beams.ranks) > 0:
-                rest, skips = all_from(beams.ranks, p, bound_out * at_1m, out.length, weakest)
-                if skips:
-                    leave_out(workspace, off_edge * rest * collector.heights[left, LENGTHS])
-                    p = int(beams.ranks[p, 2])
-                    continue
-            weight = off_edge * legs.weight[p]
-            if is_bounded:
-                limit = bounds.shadow, bound_out * bounds.legs[p], weakest
-                bound, several = pair_bound(geometry, tables, beams, p, out, limit, collector)
-                weight = apply_power_threshold(collector, workspace, least, bound, weight, several)
-            if any_of(weight > 0.0):
-                pair, here = pair_of(tables, edge, legs, p, out), (weight, bound, least)
-                bundle = add_pair(bundle, geometry, tables, block, pair, here, workspace, collector)
-            p += 1
+        while p < len(legs.order) and not is_stopped(collector.guard):
+            n_legs, p = next_legs(
+                geometry, tables, beams, bounds, p, (block, whole), workspace, collector
+            )
+            for way in range(n_legs):
+                q = int(workspace.ways[way])
+                weight = off_edge * legs.weight[q]
+                if is_bounded:
+                    limit = bounds.shadow, bound_out * bounds.legs[q], weakest
+                    bound, several = pair_bound(geometry, tables, beams, q, out, limit, collector)
+                    weight = apply_power_threshold(
+                        collector, workspace, least, bound, weight, several
+                    )
+                if any_of(weight > 0.0):
+                    pair, here = pair_of(tables, edge, legs, q, out), (weight, bound, least)
+                    bundle = add_pair(
+                        bundle, geometry, tables, block, pair, here, workspace, collector
+                    )
         add_bundle(collector.sums, workspace, block.n, bundle)
         if is_bounded:
             add_left_out(collector.sums, workspace, block.n)

@@ -61,31 +61,37 @@ class Workspace(NamedTuple):
     levels, image_z
         (8,), (2 max_reflections + 1, 8) which of the receiver heights they are at, and its images
         in floor and ceiling [m].
+    ways
+        (8,) ways to an edge, by number.
     counts
         (max_reflections + 1, 8) paths to them by reflections.
     left
         (8,) bound on the power of paths to them that are left out.
-    rows
-        (2 PAIRS + 1 + N_MOMENTS, 8) scratch.
+    rows, coefficients
+        (2 PAIRS + 1 + N_MOMENTS, 8) and (n_interactions, 4, 8) scratch.
     """
 
     receivers: Ints
     levels: Ints
     image_z: Floats
+    ways: Ints
     counts: Floats
     left: Floats
     rows: Floats
+    coefficients: Floats
 
 
-def new_workspace(max_reflections: int) -> Workspace:
-    """Working arrays for paths of that many reflections."""
+def new_workspace(max_reflections: int, n_interactions: int) -> Workspace:
+    """Working arrays for paths of that many reflections, whose legs meet no more walls."""
     return Workspace(
         np.zeros(WIDTH, np.int64),
         np.full(WIDTH, -1, np.int64),
         np.empty((2 * max_reflections + 1, WIDTH)),
+        np.zeros(WIDTH, np.int64),
         np.empty((max_reflections + 1, WIDTH)),
         np.zeros(WIDTH),
         np.empty((2 * PAIRS + 1 + N_MOMENTS, WIDTH)),
+        np.empty((n_interactions, 4, WIDTH)),
     )
 
 

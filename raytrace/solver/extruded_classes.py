@@ -31,7 +31,7 @@ from raytrace.kernels.strip_hits import hit_from_strip
 from raytrace.kernels.strips import edge_frame, grow_strips, no_strips
 from raytrace.kernels.sums import sums_bytes
 from raytrace.kernels.unfolding import max_interactions, new_leg
-from raytrace.kernels.vertical_edge_bounds import EdgeBounds, bounds_of_legs
+from raytrace.kernels.vertical_edge_bounds import edge_bounds, no_bounds
 from raytrace.kernels.vertical_edge_legs import (
     LegsIn,
     VerticalEdgeArrays,
@@ -48,8 +48,8 @@ from raytrace.solver.beam_class import BeamClass
 from raytrace.solver.limits import check_whole, nbytes, taking
 from raytrace.solver.loss_limits import (
     Arrivals,
+    AtHorizontalEdge,
     continuations,
-    distances_to_cells,
     edge_heights,
     edge_power,
     limits_from_horizontal_edge,
@@ -91,7 +91,7 @@ class Reflections(BeamClass[ReflectionBeams]):
         self, beams: ReflectionBeams, evaluation: Evaluation, collector: Collector
     ) -> None:
         geometry, leg = self._tracing.geometry, new_leg(beams.tree.link)
-        workspace = new_workspace(geometry.max_reflections)
+        workspace = new_workspace(geometry.max_reflections, len(leg.types))
         sum_reflections(geometry, evaluation.tables, beams, leg, workspace, collector)
 
     def _write_points(
@@ -124,11 +124,9 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
         to_edge = tree.beam[beams, :2] - (self._edge.x, self._edge.y)
         order, length = tree.link[beams, ORDER].astype(np.int64), np.hypot(*to_edge.T)
         arrivals = Arrivals(order, length, self._power_behind * tree.beam[beams, FRACTION])
-        place = np.array([[self._edge.x, self._edge.y]])
-        distances = distances_to_cells(t.scene.view, place)
-        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, t.scene.view, distances)
+        view, at = t.scene.view, np.array([self._edge.x, self._edge.y])
+        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, view, (at, at))
         guard = taking(t.guard, len(kept) * leg_bytes(tree.link[beams[kept]]), LEGS)
-        view = t.scene.view
         legs = legs_to_edge(view, tree, beams[kept], weight[kept], self._edge, guard)
         check_whole(guard, True, LEGS)
         return legs, left_out
@@ -165,12 +163,12 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
     ) -> None:
         geometry, tables = self._tracing.geometry, evaluation.tables
         leg = new_leg(beams.tree.link)
-        bounds = EdgeBounds(np.empty(0), np.empty(0), 0.0)
+        bounds = no_bounds()
         if collector.min_power > 0.0 or len(collector.least):
             shadow = shadow_of(self._tracing.limits, evaluation, self._edge.wedge.o_slab)
-            arriving = bounds_of_legs(geometry, tables, beams.legs)
-            bounds = EdgeBounds(arriving, shadow, self._power_behind)
-        workspace = new_workspace(geometry.max_reflections)
+            bounds = edge_bounds(geometry, tables, beams.legs, shadow, self._power_behind)
+        most = max(len(leg.types), beams.legs.types.shape[1])
+        workspace = new_workspace(geometry.max_reflections, most)
         sum_vertical_edge(geometry, tables, beams, bounds, leg, workspace, collector)
 
     def _write_points(
@@ -208,7 +206,8 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
         t = self._tracing
         x1, y1, x2, y2 = t.scene.view.ends[self._near]
         length = np.hypot(x2 - x1, y2 - y1)
-        mine = np.flatnonzero(np.isin(t.partial_walls[:, 0], (self._near, self._far)))
+        walls = t.partial_walls[:, 0]
+        mine = np.flatnonzero((walls == self._near) | (walls == self._far))
         beams = t.partial_walls[mine, 1]
         order = np.argsort(t.tree.link[beams, ORDER], kind="stable")
         mine, beams = mine[order], beams[order]
@@ -229,9 +228,9 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
             nearest=nearest,
             farthest=farthest,
         )
-        distances = distances_to_cells(t.scene.view, t.scene.view.ends[self._near].reshape(2, 2))
-        arrivals = self._arrivals(images)
-        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, t.scene.view, distances)
+        ends = t.scene.view.ends[self._near]
+        place, arrivals = (ends[:2], ends[2:]), self._arrivals(images)
+        kept, left_out = strong_arrivals(arrivals, t.limits, self._counts, t.scene.view, place)
         columns: Any = images
         return ImagesIn(*(column[kept] for column in columns)), left_out
 
@@ -248,7 +247,11 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
         fraction = self._power_behind * images.fraction
         along = np.column_stack([images.low - images.x, images.high - images.x])
         sines = along / np.maximum(np.hypot(along, images.h[:, None]), 1e-12)
-        return Arrivals(images.order, np.hypot(aside, images.h), fraction, sines, images.h)
+        meets = np.column_stack([images.x, images.low, images.high])
+        across = np.ascontiguousarray(np.stack([images.nearest, images.farthest], axis=-1))
+        length = np.hypot(aside, images.h)
+        at = AtHorizontalEdge(sines, images.h, meets, across)
+        return Arrivals(images.order, length, fraction, at)
 
     def _grow(self) -> tuple[HorizontalEdgeBeams, float]:
         t, view, (images, left_out) = self._tracing, self._tracing.scene.view, self._images_in()

@@ -16,7 +16,7 @@ from raytrace.kernels.edge_losses import EdgeWays
 from raytrace.kernels.horizontal_edge_bounds import EdgeHeights, bounds_over_edge
 from raytrace.kernels.horizontal_edge_legs import HorizontalEdgeArrays
 from raytrace.kernels.losses import UNLIMITED, Limits
-from raytrace.kernels.plan_view import PlanView
+from raytrace.kernels.plan_view import PlanView, distances_to_cells
 from raytrace.kernels.turns import Heights
 from raytrace.kernels.vertical_edge_legs import LegsIn, VerticalEdgeArrays
 from raytrace.kernels.wedge import new_wedge
@@ -133,6 +133,29 @@ def shadow_of(limits: Limits, evaluation: Evaluation, slab: int) -> Floats:
     return found if is_alone(limits) else np.maximum(found, 1.0)
 
 
+class AtHorizontalEdge(NamedTuple):
+    """How ways arrive at a horizontal edge.
+
+    Attributes
+    ----------
+    sines
+        (n, 2) the interval of the sines between the directions of arrival and the edge's normal in
+        the plan view.
+    off
+        (n,) distance of the transmitter's image in the plan view [m], negative on the other side
+        than the receivers.
+    meets
+        (n, 3) where along the edge the image is, and the interval that the way meets [m].
+    across
+        (n, max_reflections + 1, 2) see `losses.LossLimit`.
+    """
+
+    sines: Floats
+    off: Floats
+    meets: Floats
+    across: Floats
+
+
 class Arrivals(NamedTuple):
     """Ways from the transmitter to an edge.
 
@@ -141,23 +164,18 @@ class Arrivals(NamedTuple):
     order, length, fraction
         (n,) wall reflections, shortest horizontal length [m], and largest fraction of the power
         behind the edge.
-    sines
-        (n, 2) for a horizontal edge: the interval of the sines between the directions of arrival
-        and the edge's normal in the plan view.
-    off
-        (n,) for a horizontal edge: distance of the transmitter's image [m], negative on the other
-        side than the receivers.
+    at
+        Of a horizontal edge.
     """
 
     order: Ints
     length: Floats
     fraction: Floats
-    sines: Floats | None = None
-    off: Floats | None = None
+    at: AtHorizontalEdge | None = None
 
 
 def strong_arrivals(
-    arrivals: Arrivals, limits: Limits, counts: Floats, view: PlanView, distances: Floats
+    arrivals: Arrivals, limits: Limits, counts: Floats, view: PlanView, place: tuple[Floats, Floats]
 ) -> tuple[Ints, float]:
     """Ways on which enough power arrives for some cell of the plan.
 
@@ -169,8 +187,8 @@ def strong_arrivals(
         (max_reflections + 1,) see `Continuations`.
     view
         The plan view.
-    distances
-        (n_cells,) see `distances_to_cells`.
+    place
+        Both ends of the edge in the plan view, equal for a vertical one [m].
 
     Returns
     -------
@@ -183,6 +201,7 @@ def strong_arrivals(
         return np.arange(len(arrivals.order)), 0.0
     power = arrivals.fraction * loss.power_at_1m
     further = counts[limits.max_reflections - arrivals.order]
+    distances = distances_to_cells(view, *place)
     length = np.maximum(arrivals.length[:, None] + distances, 1e-9)
     compared = (power if loss.is_alone else power * further)[:, None] / length**2
     least = np.minimum.reduceat(loss.least, view.cell_edges[:-1])
@@ -194,39 +213,24 @@ def strong_arrivals(
     return kept[by_strength], float(together[~is_strong].sum())
 
 
-def distances_to_cells(view: PlanView, points: Floats) -> Floats:
-    """Shortest distances (n_cells,) [m] from a point, or the segment between two (1 or 2, 2).
-
-    The segment crosses no edge of the plan view.
-    """
-    ends, starts = view.ends.reshape(-1, 2, 2), view.cell_edges[:-1]
-    found = [_to_segments(point, ends[:, 0], ends[:, 1]) for point in points]
-    if len(points) == 2:
-        found += [_to_segments(ends[:, k], points[0], points[1]) for k in (0, 1)]
-    return np.minimum.reduceat(np.min(found, axis=0), starts)
-
-
-def _to_segments(points: Floats, one: Floats, other: Floats) -> Floats:
-    """Distances (n,) between points and segments, either of which may be a single one."""
-    along, off = other - one, points - one
-    square = np.maximum((along**2).sum(axis=-1), 1e-30)
-    t = np.clip((off * along).sum(axis=-1) / square, 0.0, 1.0)
-    return np.linalg.norm(off - t[..., None] * along, axis=-1)
-
-
 def limits_from_horizontal_edge(
     arrivals: Arrivals, limits: Limits, counts: Floats, heights: EdgeHeights | None
 ) -> Limits:
     """Limits of beams from a horizontal edge that power arrives at."""
     order = limits.max_reflections - int(arrivals.order.min())
     loss = limits.loss._replace(further=counts)
-    if heights is not None and arrivals.sines is not None and arrivals.off is not None:
-        columns = [arrivals.order, arrivals.length, arrivals.fraction, arrivals.sines]
-        ways = np.ascontiguousarray(np.column_stack(columns))
-        sin_beta = np.sqrt(np.maximum(1.0 - (arrivals.sines**2).max(axis=1), 0.0))
-        over = bounds_over_edge(heights, arrivals.off, arrivals.length, sin_beta)
-        ranks = ranks_of(arrivals.order, arrivals.length, arrivals.fraction)
-        loss = loss._replace(ranks=ranks, ways=ways, over_edge=over)
+    if heights is not None and arrivals.at is not None:
+        at, left = arrivals.at, limits.max_reflections - arrivals.order
+        ways = np.column_stack([arrivals.order, arrivals.length, arrivals.fraction, at.meets])
+        sin_beta = np.sqrt(np.maximum(1.0 - (at.sines**2).max(axis=1), 0.0))
+        rise = np.maximum(np.abs(heights.low), np.abs(heights.high))
+        loss = loss._replace(
+            ranks=ranks_of(arrivals.order, arrivals.length, arrivals.fraction),
+            ways=np.ascontiguousarray(ways),
+            across=at.across,
+            rises=np.maximum.accumulate([rise[0], *rise[1:].reshape(-1, 2).max(axis=1)]),
+            over_edge=bounds_over_edge(heights, left, at.off, arrivals.length, sin_beta),
+        )
     return limits._replace(max_reflections=order, loss=loss)
 
 

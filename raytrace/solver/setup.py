@@ -170,7 +170,9 @@ def limits_by_number(scene: Scene, config: TraceConfig) -> Limits:
         most_behind_edge=0.0,
         edge_ways=no_edge_ways(),
         ranks=np.zeros((0, 4)),
-        ways=np.zeros((0, 5)),
+        ways=np.zeros((0, 6)),
+        across=np.zeros((0, 0, 2)),
+        rises=np.zeros(0),
         over_edge=np.zeros((0, order + 1, DISTANCES + 1)),
         further=np.zeros(0),
     )

@@ -1,11 +1,13 @@
 """Beams that are too weak are not grown: no strong path is missing, and the rest is bounded."""
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 import numba
 import numpy as np
 import pytest
+import shapely
 from buildings import GLASS, Building, box, door, wall
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -35,6 +37,7 @@ from raytrace.kernels.horizontal_edge_bounds import (
     bounds_over_edge,
 )
 from raytrace.kernels.losses import COSINE_BINS
+from raytrace.kernels.plan_view import distances_to_cells
 from raytrace.kernels.wedge import Wedge, new_wedge
 from raytrace.radio.materials import MATERIALS, Slab
 from raytrace.radio.tables import field_tables
@@ -167,6 +170,22 @@ def test_slabs_keep_no_more_than_their_bounds(slab: Slab) -> None:
         assert bounds[0, -1] == pytest.approx(1.001 * power.max(), rel=1e-3)
 
 
+def test_distances_to_cells_are_those_of_polygons() -> None:
+    view, rng = THREE_ROOMS.scene.view, np.random.default_rng(0)
+    outlines = [
+        shapely.linearrings(view.ends[first:last, :2])
+        for first, last in pairwise(view.cell_edges.tolist())
+    ]
+    for _ in range(50):
+        one, other = rng.uniform(0.0, (3.0, 4.0), (2, 2))
+        for end in (one, other):
+            way = shapely.LineString([one, end])
+            if any(shapely.crosses(way, outline) for outline in outlines):
+                continue
+            expected = [shapely.distance(way, outline) for outline in outlines]
+            assert distances_to_cells(view, one, end) == pytest.approx(expected, abs=1e-12)
+
+
 def test_unlimited_transmissions_need_a_power() -> None:
     with pytest.raises(ValueError, match="max_transmissions = None, but min_power_dbm = -inf"):
         TraceConfig(max_transmissions=None)
@@ -268,7 +287,7 @@ def test_no_height_exceeds_the_bound_behind_a_horizontal_edge(seed: int) -> None
     h, length = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-2.0, 1.5), rng.uniform(0.0, 30.0)
     length, least_sin_beta = max(length, abs(h)), rng.uniform(0.05, 1.0)
     most = rng.uniform(1.0, 3.0)
-    ways = np.array([h]), np.array([length]), np.array([least_sin_beta])
+    ways = np.array([order]), np.array([h]), np.array([length]), np.array([least_sin_beta])
     heights = EdgeHeights(bounces, before, lowest, highest, *made.at_or_above(), wavelength, most)
     bounds = bounds_over_edge(heights, *ways)[0, :, :DISTANCES]
     assert (np.diff(bounds, axis=0) >= 0.0).all()
