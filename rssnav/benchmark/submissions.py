@@ -16,7 +16,7 @@ from typing import Any, cast, get_args
 from raytrace.trace import TRACER_VERSION
 from rssnav.benchmark.buildings import Site
 from rssnav.benchmark.errors import BenchmarkError
-from rssnav.benchmark.policies import Track
+from rssnav.benchmark.policies import PolicySpec, Track
 from rssnav.benchmark.protocol import (
     BENCHMARK_VERSION,
     CONDITIONS,
@@ -102,12 +102,29 @@ def merged(parts: Sequence[Sequence[Score]]) -> list[Score]:
     for score in (score for part in parts for score in part):
         key = (score.site, score.condition, score.track, score.policy)
         if key in found:
-            raise BenchmarkError(
-                f"policy {score.policy!r} of track {score.track!r} is in two results; give one "
-                "another name (--name)"
-            )
+            raise _twice(score.policy, score.track)
         found[key] = score
     return list(found.values())
+
+
+def check_names(policies: Sequence[PolicySpec], others: Sequence[Score]) -> None:
+    """Check that no policy that is to fly has name and track of one with scores.
+
+    Raises
+    ------
+    BenchmarkError
+        When one has.
+    """
+    taken = {(score.policy, score.track) for score in others}
+    for spec in policies:
+        if (spec.name, spec.track) in taken:
+            raise _twice(spec.name, spec.track)
+
+
+def _twice(policy: str, track: str) -> BenchmarkError:
+    return BenchmarkError(
+        f"policy {policy!r} of track {track!r} is in two results; give one another name (--name)"
+    )
 
 
 def _score(row: Any, where: str, extent: Extent) -> Score:

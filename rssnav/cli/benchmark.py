@@ -93,13 +93,14 @@ def run_benchmark(
     from rssnav.benchmark.protocol import FULL, QUICK, extent_of
     from rssnav.benchmark.running import run
     from rssnav.benchmark.scores import scores
-    from rssnav.benchmark.submissions import merged, read_scores
+    from rssnav.benchmark.submissions import check_names, merged, read_scores
 
     specs = policies_of(track)
     if policy is not None:
         specs = (policy_of(policy, track or "RSS", name),)
     extent = extent_of(QUICK if quick else FULL, split, buildings, plans or (), seeds)
-    others = [read_scores(path, extent) for path in beside or ()]
+    others = merged([read_scores(path, extent) for path in beside or ()])
+    check_names(specs, others)
     try:
         with stage_progress() as show:
             records = run(specs, extent, out, threads=threads, resume=resume, show=show)
@@ -108,7 +109,7 @@ def run_benchmark(
             f"interrupted; finished flights are saved in {out}; run the same command again to "
             "resume"
         ) from interrupt
-    found = merged([scores(records), *others])
+    found = merged([scores(records), others])
     files = write(out, found, extent)
     head = ("buildings", "condition", "policy", "track", "success", "SPL (95 %)")
     print_table(head, table_rows(found))

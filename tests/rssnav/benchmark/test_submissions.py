@@ -10,9 +10,11 @@ from benchmark_records import SMALL, records
 
 from rssnav.benchmark.errors import BenchmarkError
 from rssnav.benchmark.page import as_markdown, as_page, write
+from rssnav.benchmark.policies import PolicySpec
 from rssnav.benchmark.protocol import QUICK
 from rssnav.benchmark.scores import scores
-from rssnav.benchmark.submissions import as_json, merged, read_scores
+from rssnav.benchmark.submissions import as_json, check_names, merged, read_scores
+from rssnav.missions import RandomPolicy
 
 
 @pytest.fixture
@@ -109,6 +111,10 @@ def test_results_of_several_are_merged_unless_they_have_the_same_name(file):
     assert merged([found, other]) == [*found, *other]
     with pytest.raises(BenchmarkError, match="another name"):
         merged([found, found])
+    mine = PolicySpec("a", "RSS", lambda _: RandomPolicy())
+    with pytest.raises(BenchmarkError, match="policy 'a' of track 'RSS' is in two results"):
+        check_names([mine], found)
+    check_names([replace(mine, name="b"), replace(mine, track="plan")], found)
 
 
 def test_tables_hold_all_entrants_best_first_and_names_are_escaped(file, tmp_path):
