@@ -48,7 +48,7 @@ def may_leave(loss: LossLimit, k: int, left: int, spread: Spread) -> bool:
     its source from the line.
     """
     x, low, high = loss.ways[k, 3], loss.ways[k, 4], loss.ways[k, 5]
-    if low > spread.starts[1] or high < spread.starts[0]:
+    if low > spread.starts[1] + ROUNDING or high < spread.starts[0] - ROUNDING:
         return False
     rise, near = loss.rises[left], max(loss.across[k, left, 0], 1e-9)
     least = 1.0 / max(loss.across[k, left, 1], 1e-9)
