@@ -119,9 +119,12 @@ def mission_of_doors(
     Raises
     ------
     ValueError
-        For more than `MOST_DOORS` doors.
+        For more than `MOST_DOORS` doors, and for one twice or that is no open door of the plan.
     """
     require(len(doors) <= MOST_DOORS, "doors", len(doors), f"at most {MOST_DOORS}")
+    is_open = set(doors_of(plan)) - set(shut_doors(plan))
+    proper = is_open.issuperset(doors) and len(set(doors)) == len(doors)
+    require(proper, "doors", tuple(doors), f"different open doors of plan {plan.name!r}")
     states = [_subset(doors, state) for state in range(2 ** len(doors))]
     fields = [
         fields_of_places(

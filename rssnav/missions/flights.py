@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rssnav.arguments import require
+from rssnav.arguments import is_whole, require
 from rssnav.kernels import fleet as kernel
 from rssnav.kernels import stepping
 from rssnav.missions.mission import Mission
 from rssnav.missions.observation import Observation
-from rssnav.missions.policy import Policy, Seen
+from rssnav.missions.policy import HOVER, Policy, Seen
 from rssnav.missions.tables import mission_moves, sensor_tables
 from rssnav.missions.task import Task
 
@@ -111,7 +111,15 @@ class Flyer:
         return self.seen()
 
     def step(self, action: int) -> tuple[float, int]:
-        """Fly an action: (reward, RUNNING, FOUND or TRUNCATED)."""
+        """Fly an action: (reward, RUNNING, FOUND or TRUNCATED).
+
+        Raises
+        ------
+        ValueError
+            For what is no action; an impossible one leaves the UAV where it is.
+        """
+        if not is_whole(action, 0, HOVER):
+            raise ValueError(f"action {action!r}: expected a whole number from 0 to 7, or HOVER")
         kernel.step_running(self.moves, self.sensor, self.fleet, np.array([action]))
         return float(self.fleet.reward[0]), int(self.fleet.status[0])
 
@@ -165,9 +173,9 @@ def fly(
     Raises
     ------
     ValueError
-        For less than one episode.
+        For less than one episode, and when the policy returns what is no action.
     """
-    require(episodes >= 1, "episodes", episodes, "at least 1")
+    require(is_whole(episodes, 1, _STREAM), "episodes", episodes, "a whole number of at least 1")
     flyer, goal = Flyer(mission, task, observation), task.goal.cells(mission)
     flown: list[_Flown] = []
     for episode in range(episodes):

@@ -111,8 +111,19 @@ class Mission:
         return replace(self, modes=modes)
 
     def from_starts(self, starts: NDArray[np.integer]) -> Mission:
-        """Return the same mission with episodes that begin in any of some cells (k,)."""
-        cells = np.asarray(starts, dtype=np.int32).reshape(-1)
+        """Return the same mission with episodes that begin in any of some cells (k,).
+
+        Raises
+        ------
+        WorldError
+            For what are no cells, or none.
+        """
+        numbers = np.asarray(starts).reshape(-1)
+        if numbers.size and not np.issubdtype(numbers.dtype, np.integer):
+            raise WorldError(
+                f"mission {self.name!r}: starts must be numbers of cells, got {numbers}"
+            )
+        cells = np.clip(numbers, -1, self.n_states).astype(np.int32)  # checked when it is made
         return replace(
             self, starts=cells, start_probability=np.full(cells.size, 1.0 / max(cells.size, 1))
         )

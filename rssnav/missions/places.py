@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from floorplans import FloorPlan
 from raytrace import Antenna, Grid, HalfWaveDipole, TraceConfig, Transmitter
-from rssnav.arguments import require
+from rssnav.arguments import is_whole, require
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M
 from rssnav.missions.layout import Layout, WorldError
 from rssnav.missions.mission import Mission
@@ -100,7 +100,7 @@ def spread_places(
     ValueError
         For n below 1, and where the plan has no room for so many places.
     """
-    require(n >= 1, "n", n, "at least 1")
+    require(is_whole(n, 1, 2**31), "n", n, "a whole number of at least 1")
     layout = reachable_layout(plan, speed)
     x, y, z = plan.require_source()
     candidates = places_beside(plan, layout.position, _BESIDE_M, z)

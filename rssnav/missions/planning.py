@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rssnav.arguments import require
 from rssnav.missions.mission import Mission
 from rssnav.missions.observation import Observation
 from rssnav.missions.policy import GreedyTable
@@ -75,10 +76,11 @@ def plan_mission(
     Raises
     ------
     ValueError
-        For energy without a model.
+        For energy without a model, and for what can not be minimised.
     WorldError
         When the task cannot be done in the mission.
     """
+    require(minimise in ("steps", "energy"), "minimise", minimise, "'steps' or 'energy'")
     goal = task.check(mission)
     if minimise == "energy" and task.energy is None:
         raise ValueError("minimise: 'energy' needs a task with a model of energy")

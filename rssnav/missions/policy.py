@@ -8,6 +8,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from rssnav.arguments import require
+
 HOVER = 8
 """The action of staying in the cell for one more reading."""
 
@@ -73,11 +75,19 @@ class GreedyTable:
         tell apart.
     name : str
         Short name for tables and figures.
+
+    Raises
+    ------
+    ValueError
+        For an epsilon that is no probability.
     """
 
     q: NDArray[np.float64]
     epsilon: float = 0.0
     name: str = "Q-learning"
+
+    def __post_init__(self) -> None:
+        require(0.0 <= self.epsilon <= 1.0, "epsilon", self.epsilon, "a number in [0, 1]")
 
     def begin(self, generator: np.random.Generator) -> None:
         """Take the random numbers of a flight."""

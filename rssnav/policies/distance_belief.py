@@ -82,6 +82,7 @@ class DistanceSearch:
         require(self.sigma_db > 0.0, "sigma_db", self.sigma_db, "a positive number [dB]")
         require(0.0 < self.temper <= 1.0, "temper", self.temper, "a number in (0, 1]")
         require(self.steps_to_draw >= 1, "steps_to_draw", self.steps_to_draw, "at least 1")
+        require(len(self.exponents) > 0, "exponents", self.exponents, "at least one")
         self._steps = StepMemory(self.layout, plan_known=self.plan_known, remembers=self.remembers)
         cell_m = self.layout.step_length_m[0] / self.layout.speed
         self._drop_db = _drop_db(self._steps.shape, cell_m, np.array(self.exponents))

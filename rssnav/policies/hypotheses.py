@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from floorplans import FloorPlan
 from raytrace import Antenna, Isotropic, TraceConfig
+from rssnav.arguments import is_finite, require
 from rssnav.missions.layout import Layout
 from rssnav.missions.mission import Mission
 from rssnav.missions.places import fields_of_places, places_beside
@@ -127,7 +128,13 @@ class Hypotheses:
             At both ends; by default of unknown orientation.
         threads, progress
             As for `rssnav.maps.make_map`.
+
+        Raises
+        ------
+        ValueError
+            For a level that is not finite.
         """
+        require(is_finite(level_dbm), "level_dbm", level_dbm, "a finite level [dBm]")
         centres = layout.position[_dominating(layout)]
         position = places_beside(plan, centres, _BESIDE_M, height_m)
         fields_dbm = fields_of_places(

@@ -163,8 +163,10 @@ class _MapPolicy:
         self._flown = False
 
     def _weigh(self, observation: Seen, mask: NDArray[np.bool_]) -> None:
-        self.belief.update(observation.cell, observation.reading_dbm, moved=self._flown)
-        self._hops.see(observation.cell, mask)
+        cell = observation.cell
+        require(cell >= 0, "cell", cell, "the UAV's own; fly with an Observation(..., cell=True)")
+        self.belief.update(cell, observation.reading_dbm, moved=self._flown)
+        self._hops.see(cell, mask)
         self._flown = True
 
     def _best(self, mask: NDArray[np.bool_], costs: NDArray[np.float64]) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rssnav.arguments import require
 from rssnav.kernels.grid_search import explore
 from rssnav.missions.layout import ACTIONS, Layout
 
@@ -59,7 +60,14 @@ class StepMemory:
         self.possible[:], self.visited[:] = self._assumed, False
 
     def see(self, cell: int, mask: NDArray[np.bool_]) -> int:
-        """Note the possible actions ``mask`` (8,) in a cell of the layout; return its grid cell."""
+        """Note the possible actions ``mask`` (8,) in a cell of the layout; return its grid cell.
+
+        Raises
+        ------
+        ValueError
+            When the cell was not observed.
+        """
+        require(cell >= 0, "cell", cell, "the UAV's own; fly with an Observation(..., cell=True)")
         here = int(self.grid_cell[cell])
         self.visited[here] = True
         if not self._remembers:

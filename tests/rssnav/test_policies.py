@@ -377,12 +377,20 @@ def test_without_memory_a_step_that_was_seen_blocked_is_tried_again():
         (lambda layout: DistanceSearch(layout, targets="best"), "targets"),
         (lambda layout: FrontierSearch(layout, steps_per_db=-1.0), "steps_per_db"),
         (lambda layout: GaussianProcessSearch(layout, length_m=0.0), "length_m"),
+        (lambda layout: DistanceSearch(layout, exponents=()), "exponents"),
         (lambda _: Likelihood(temper=2.0), "temper"),
     ],
 )
 def test_settings_out_of_range_are_named(make, name):
     with pytest.raises(ValueError, match=name):
         make(open_room().layout)
+
+
+@pytest.mark.parametrize("number", range(11))
+def test_searchers_that_are_not_told_their_cell_say_so(number):
+    mission = open_room()
+    with pytest.raises(ValueError, match="cell = -1: expected the UAV's own"):
+        fly(mission, TASK, Observation(None), policies(mission)[number], episodes=1)
 
 
 def test_a_faster_uav_knows_the_same_steps():

@@ -86,6 +86,15 @@ def test_each_mode_has_the_steps_and_the_field_of_the_plan_with_its_doors_closed
         assert mission.source[mode].tolist() == list(PLACES[place][:2])
 
 
+@pytest.mark.parametrize("doors", [(Door(99, 0),), (Door(4, 1),), (Door(4, 0), Door(4, 0))])
+def test_what_is_no_open_door_of_the_plan_is_refused(doors):
+    """There is no wall 99, the second door is shut, and none can be given twice."""
+    plan = two_rooms(0.1, 2.1)
+    plan = with_changed(plan, [Door(4, 1)])
+    with pytest.raises(ValueError, match=r"doors = .*: expected different open doors of plan"):
+        mission_of_doors(plan, layout_of(plan), doors, PLACES, antenna=HalfWaveDipole())
+
+
 def test_a_door_is_seen_from_where_a_step_leads_through_it():
     plan = two_rooms(0.1, 2.1)
     layout, (first, _) = layout_of(plan), doors_of(plan)

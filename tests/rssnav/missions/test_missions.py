@@ -105,6 +105,30 @@ def test_missions_of_wrong_shapes_are_refused():
         replace(mission, rss_dbm=mission.rss_dbm[1:])
     with pytest.raises(WorldError, match="starts must be some of the 40 cells"):
         mission.from_starts(np.array([40]))
+    for starts in ([2**40], [-1], []):
+        with pytest.raises(WorldError, match="starts must be some of the 40 cells"):
+            mission.from_starts(np.array(starts, dtype=np.int64))
+    with pytest.raises(WorldError, match="starts must be numbers of cells"):
+        mission.from_starts(np.array([0.5]))
+
+
+@pytest.mark.parametrize("action", [-1, 9, 99, 2**40, None, 1.0, float("nan"), "east", True])
+def test_what_is_no_action_is_refused(action):
+    """The step is compiled: it would read beyond its tables."""
+
+    class Wrong(RandomPolicy):
+        def act(self, observation, mask):
+            return action
+
+    with pytest.raises(ValueError, match="expected a whole number from 0 to 7, or HOVER"):
+        fly(room_mission(), Task(Within(1.0)), Observation(None, cell=True), Wrong())
+
+
+def test_numbers_of_flights_and_probabilities_out_of_range_are_refused():
+    with pytest.raises(ValueError, match=r"episodes = 1.5"):
+        fly(room_mission(), Task(Within(1.0)), Observation(None), RandomPolicy(), episodes=1.5)
+    with pytest.raises(ValueError, match="epsilon = 7"):
+        GreedyTable(np.zeros((1, 8)), 7.0)
 
 
 def test_flights_are_counted_by_what_was_flown(room_world):

@@ -155,6 +155,8 @@ def test_a_sequential_test_keeps_its_error_in_the_worst_cell_and_misses_no_clear
 def test_energy_without_a_model_is_refused():
     with pytest.raises(ValueError, match="needs a task with a model of energy"):
         plan_mission(room_mission(), Task(Within(1.0)), "energy")
+    with pytest.raises(ValueError, match="minimise = 'money': expected 'steps' or 'energy'"):
+        plan_mission(room_mission(), Task(Within(1.0)), "money")
 
 
 def test_what_was_never_tried_is_never_chosen():
