@@ -8,6 +8,8 @@ from uuid import uuid4
 import h5py
 from numpy.typing import NDArray
 
+from raytrace.results.superblock import with_checksum
+
 HASH_MARK = b"rssnav sha256 "
 """Stands behind the content and before its hash."""
 
@@ -29,7 +31,7 @@ def hdf5_bytes(fill: Callable[[h5py.File], None]) -> bytes:
     ) as file:
         fill(file)
         file.flush()
-        content = file.id.get_file_image()
+        content = with_checksum(file.id.get_file_image())
     return content + HASH_MARK + hashlib.sha256(content).digest()
 
 

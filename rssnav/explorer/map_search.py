@@ -14,7 +14,7 @@ from rssnav.explorer.map_drawing import colour_bar
 from rssnav.pictures.style import AGENT_COLOURS
 
 COLOURS = (AGENT_COLOURS["rss"], AGENT_COLOURS["location"])
-BELIEF = "#d6006c"
+BELIEF, BELIEF_LABEL = "#d6006c", "Belief: probability in each cell"
 WIDTHS, EDGE = (6.0, 2.2), 2.2
 """Widths of the lines [px]; the first is seen on both sides of the second where both flew."""
 
@@ -24,6 +24,11 @@ LEAST_STRENGTH = 6.0
 
 _NO_POINTS: dict[str, list[float]] = {"x": [], "y": []}
 _NO_IMAGE: dict[str, list[Any]] = {name: [] for name in ("image", "x", "y", "dw", "dh")}
+
+
+def darkest(belief: NDArray[np.float32]) -> float:
+    """Probability of a cell from which on a belief has its darkest shade."""
+    return max(float(belief.max()), LEAST_STRENGTH / belief.size)
 
 
 class SearchOverlay:
@@ -41,7 +46,7 @@ class SearchOverlay:
         self._belief = ColumnDataSource(dict(_NO_IMAGE))
         glyph = Image(image="image", x="x", y="y", dw="dw", dh="dh", color_mapper=self._mapper)
         model.add_glyph(self._belief, glyph)
-        self._bar = colour_bar(self._mapper, "Belief: probability of the source in each cell")
+        self._bar = colour_bar(self._mapper, BELIEF_LABEL)
         self._bar.visible = False
         model.add_layout(self._bar, "below")
         self._trails: list[tuple[ColumnDataSource, ColumnDataSource]] = []
@@ -97,7 +102,7 @@ class SearchOverlay:
             return
         self._bar.visible = True
         half = 0.5 * grid.cell_size_m
-        self._mapper.high = max(float(belief.max()), LEAST_STRENGTH / belief.size)
+        self._mapper.high = darkest(belief)
         self._belief.data = {
             "image": [belief],
             "x": [grid.x[0] - half],

@@ -32,6 +32,9 @@ const contents = {
     lines: x.map((at, k) => ({ x: Array.from(at), y: Array.from(y[k]), colour: colour[k] })),
   }),
   "flight steps": ({ step }) => ({ steps: Array.from(step) }),
+  "flight belief": ({ probability: [cells], columns: [columns], darkest: [darkest] }) => ({
+    belief: cells ? { cells: Float32Array.from(cells), columns, darkest } : {},
+  }),
 };
 window.passOnFlights = (name) => {
   const data = named(name);

@@ -269,7 +269,8 @@ class Page:
             [
                 FlightLine(position, len(position) - 1, colour)
                 for position, colour in zip(positions, COLOURS, strict=True)
-            ]
+            ],
+            belief,
         )
 
     def _switch_tab(self, _event: Any) -> None:
@@ -288,7 +289,6 @@ class Page:
         in_space = event.new == SPACE_VIEW
         self._space.visible, self._canvas.visible = in_space, not in_space
         self._legend.object = LEGEND_3D if in_space else LEGEND
-        self._search_panel.offer_belief(not in_space)
         self._space_flights.set_visible(in_space)
         self._show_space()
 

@@ -110,10 +110,6 @@ class SearchPanel:
             self._go(None)
         return self.player.visible
 
-    def offer_belief(self, offered: bool) -> None:
-        """Offer the choice of a belief, which the view in three dimensions does not show."""
-        self._belief.visible = offered
-
     def _button(self, name: str, kind: str, act: Callable[[Any], None]) -> Any:
         button = pn.widgets.Button(label=name, button_type=kind, stylesheets=WIDGETS, width=110)
         button.on_click(act)

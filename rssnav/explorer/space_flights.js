@@ -1,5 +1,6 @@
-// Flights that the page around this one sends, drawn over the building: {lines} when there are
-// other flights, {steps} when the UAVs move. LOOK holds height and radius [m].
+// What the page around this one sends, drawn over the building: {lines} when there are other
+// flights, {steps} when the UAVs move, {belief} in place of the map, or {} in it for none.
+// LOOK holds height and radius of flights and corners of the map [m], colour and opacity of beliefs.
 const flights = new THREE.Group();
 const UP = new THREE.Vector3(0, 1, 0);
 let uavs = [];
@@ -59,10 +60,51 @@ function move(steps) {
   });
 }
 
+let belief = null;
+const BELIEF_LIFT = 0.02;
+
+function believe({ cells, columns, darkest }) {
+  if (belief) {
+    scene.remove(belief);
+    belief.material.map.dispose();
+  }
+  belief = cells ? plane(cells, columns, darkest) : null;
+  const [mapBar, bar] = ["colour-bar", "belief-bar"].map((id) => document.getElementById(id));
+  mapBar.hidden = Boolean(belief);
+  bar.hidden = !belief;
+  if (!belief) return;
+  bar.querySelectorAll("span")[1].textContent = darkest.toPrecision(2);
+  scene.add(belief);
+}
+
+function plane(cells, columns, darkest) {
+  const pixels = new Uint8Array(4 * cells.length);
+  cells.forEach((cell, k) => {
+    const opacity = LOOK.opacity * Math.min(cell / darkest, 1);
+    pixels.set([...LOOK.belief, Math.round(255 * opacity)], 4 * k);
+  });
+  const map = new THREE.DataTexture(pixels, columns, cells.length / columns);
+  map.needsUpdate = true;
+  const [x0, y0, x1, y1] = LOOK.corners;
+  const shape = new THREE.PlaneGeometry(x1 - x0, y1 - y0).rotateX(-Math.PI / 2);
+  const look = { map, transparent: true, depthWrite: false, side: THREE.DoubleSide };
+  const mesh = new THREE.Mesh(shape, new THREE.MeshBasicMaterial(look));
+  mesh.position.copy(inScene((x0 + x1) / 2, (y0 + y1) / 2, BELIEF_LIFT));
+  mesh.renderOrder = -1;  // before the walls, which are transparent too
+  return mesh;
+}
+
+// The map may be loaded after the first belief has come.
+scene.onBeforeRender = () => {
+  const map = scene.getObjectByName("map");
+  if (map) map.visible = !belief;
+};
+
 window.addEventListener("message", ({ source, data }) => {
   if (source !== parent || !data) return;
   if (data.lines) draw(data.lines);
   if (data.steps) move(data.steps);
+  if (data.belief) believe(data.belief);
   if (camera) render();
 });
 scene.add(flights);

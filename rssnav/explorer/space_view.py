@@ -24,7 +24,7 @@ from floorplans.pictures.viewer_3d import (
     plan_scene,
     scene_html,
 )
-from raytrace import RadioMap
+from raytrace import Grid, RadioMap
 from rssnav.explorer.cell_paths import CellPaths, path_colours, strongest
 from rssnav.explorer.space_flights import script
 from rssnav.explorer.tracing import TracedMap
@@ -60,7 +60,8 @@ def page_3d(
     title, bar, flights = plan.name, None, ""
     if traced is not None:
         bar = _add_map(scene, plan, traced.radio_map)
-        flights = script(traced.radio_map.grid.height_m, 2 * radius_m)
+        grid = traced.radio_map.grid
+        flights = script(grid.height_m, 2 * radius_m, _corners(grid))
     if found is not None:
         lines = strongest(found)
         add_lines(scene, "paths", lines, path_colours(found.power_dbm[: len(lines)]), radius_m)
@@ -117,13 +118,19 @@ def _levels(radio_map: RadioMap) -> tuple[float, float]:
     return (float(covered.min()), float(covered.max())) if covered.size else (0.0, 0.0)
 
 
+def _corners(grid: Grid) -> tuple[float, float, float, float]:
+    """x_min, y_min, x_max, y_max of all cells [m]."""
+    half = 0.5 * grid.cell_size_m
+    (x0, x1), (y0, y1) = ((float(at[0]) - half, float(at[-1]) + half) for at in (grid.x, grid.y))
+    return x0, y0, x1, y1
+
+
 def _add_map(scene: trimesh.Scene, plan: FloorPlan, radio_map: RadioMap) -> ColourBar:
     """Lay a map on the floor; return the legend of its colours."""
-    grid, half = radio_map.grid, 0.5 * radio_map.grid.cell_size_m
-    picture = map_picture(radio_map, cells_inside(plan, grid))
+    picture = map_picture(radio_map, cells_inside(plan, radio_map.grid))
     scale = max(1, TEXTURE_PX // max(picture.shape[:2]))
     sharp = picture.repeat(scale, axis=0).repeat(scale, axis=1)
-    (x0, x1), (y0, y1) = ((at[0] - half, at[-1] + half) for at in (grid.x, grid.y))
+    x0, y0, x1, y1 = _corners(radio_map.grid)
     corners = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
     triangles = np.array([(0, 1, 2), (0, 2, 3)])
     raised = np.column_stack([corners, np.full(4, LIFT_M)])

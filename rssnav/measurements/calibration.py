@@ -288,6 +288,10 @@ def fit_values(
     if at_start is not None:
         keep(start, at_start)
 
+    if not of:  # SciPy 1.15 cannot fit nothing
+        slopes = evaluated(start)[1]
+        return Fit(start, deviations(slopes, spread), slopes * NOISE_DB, 1)
+
     def rows(values: Floats) -> Floats:
         return np.append(evaluated(values)[0], (values - prior) / spread)
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from raytrace.results.checked_hdf5 import Checked, Hdf5ContentError, open_checked
 from raytrace.results.hdf5 import hdf5_bytes, write_array
+from raytrace.results.superblock import with_checksum
 
 
 def fill(file: h5py.File) -> None:
@@ -42,6 +43,18 @@ def test_what_is_written_comes_back() -> None:
     assert checked.array("none", np.float64, (0, "x")).shape == (0, 4)
     assert checked.attributes() == {"name": "flat", "count": 3}
     assert checked.within("world").attributes() == {"speed": 2}
+
+
+@pytest.mark.parametrize("count", [0, 3, 70_000])
+def test_the_checksum_of_a_superblock_is_that_of_the_hdf5_library(tmp_path, count: int) -> None:
+    with h5py.File(tmp_path / "file.h5", "w", libver=("v110", "v110")) as file:
+        file["x"] = np.arange(count)
+    content = (tmp_path / "file.h5").read_bytes()
+    damaged = bytearray(content)
+    damaged[44:48] = bytes(4)
+    assert with_checksum(bytes(damaged)) == content
+    with pytest.raises(OSError, match="checksum"):
+        opened(bytes(damaged))
 
 
 def test_sizes_of_one_name_must_agree() -> None:

@@ -69,7 +69,7 @@ def test_a_table_of_paths_is_the_data_frame(flat: Scene, tmp_path: Path) -> None
     points = np.array([[3.1, 6.3, 1.4], [9.7, 2.2, 1.1]])
     paths = trace_paths(flat, TRANSMITTER, points, TraceConfig(2, 1))
     paths.to_csv(tmp_path / "paths.csv")
-    read = pandas.read_csv(tmp_path / "paths.csv", keep_default_na=False)
+    read = pandas.read_csv(tmp_path / "paths.csv", keep_default_na=False, dtype=str)
     expected = paths.to_dataframe()
     for column in ("receiver", "sequence", "delay_s", "gain_real", "surfaces"):
         assert read[column].astype(expected[column].dtype).tolist() == expected[column].tolist()

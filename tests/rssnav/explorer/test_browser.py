@@ -102,6 +102,17 @@ SPACE = """() => ({
 """What is drawn of the flights in 3D, in the axes of the plan [m]."""
 
 
+BELIEF = """() => {
+    const box = new THREE.Box3().setFromObject(belief), { image } = belief.material.map;
+    return {
+        cells: [image.width, image.height], corners: [box.min.x, -box.max.z, box.max.x, -box.min.z],
+        map: scene.getObjectByName("map").visible,
+        mapBar: !document.getElementById("colour-bar").hidden,
+    };
+}"""
+"""The belief that is drawn in 3D, corners in the axes of the plan [m], and what it replaces."""
+
+
 def space_of(tab: Tab, n_flights: int) -> dict:
     """What the frame in 3D shows, once it has so many flights."""
     for _ in range(PATIENCE_MS // 250):
@@ -158,6 +169,15 @@ def test_two_searchers_fly_side_by_side(tab) -> None:
     tab.page.get_by_text(re.compile(r"Frontier: step 0 of")).wait_for()
     tab.page.get_by_role("button", name="3D", exact=True).click()
     assert space_of(tab, 2)["counts"] == [0, 0]
+    tab.page.wait_for_timeout(500)
+    frame = tab.page.locator("iframe[title='3D']").element_handle().content_frame()
+    drawn = frame.evaluate(BELIEF)
+    assert drawn["cells"] == [12, 9]
+    assert drawn["corners"] == pytest.approx([0.0, 0.0, 12.0, 9.0])
+    assert not drawn["map"]
+    assert not drawn["mapBar"]
+    tab.page.get_by_label("Belief of").select_option("none")
+    frame.wait_for_function("belief == null && scene.getObjectByName('map').visible")
     tab.page.get_by_role("button", name="2D", exact=True).click()
     tab.choose("Help")
     expect(tab.page.locator("button.first:visible")).to_have_count(0)
