@@ -165,5 +165,8 @@ def _facts(search: LiveSearch | None) -> str:
         words = "Searchers do not learn. Each flies once from the start until it finds the source."
         return f'<p class="quiet">{words}</p>'
     fewest = "-" if search.shortest_steps is None else str(search.shortest_steps)
-    flights = [(f.name, f"{f.end or 'flies'}, {f.steps} steps") for f in search.flights]
+    flights = [
+        (f.name, f"{f.end or 'flies'}, {f.steps} steps, {f.energy_kj:.2f} kJ")
+        for f in search.flights
+    ]
     return pairs([*flights, ("fewest possible", f"{fewest} steps")])

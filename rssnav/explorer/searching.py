@@ -19,6 +19,7 @@ from rssnav.explorer.live_work import LiveWork
 from rssnav.explorer.tracing import TracedMap
 from rssnav.kernels import stepping
 from rssnav.missions import Layout, Observation, Policy, RandomPolicy, ReadingAbove, Task
+from rssnav.missions.energy import MultirotorEnergy
 from rssnav.missions.flights import Flyer
 from rssnav.optimal_flights import shortest_path
 from rssnav.policies import DistanceSearch, FrontierSearch, GaussianProcessSearch
@@ -83,6 +84,8 @@ class SearchSettings:
         Standard deviation of readings about the map [dB].
     confirmations : int
         Readings whose mean must be above the goal.
+    battery_kj : float
+        Energy after which a flight ends [kJ], by the model `MultirotorEnergy`.
     speed : int
         Cells per step along an axis.
     max_steps : int
@@ -94,6 +97,7 @@ class SearchSettings:
     goal_rss_dbm: float = -21.0
     sigma_db: float = 0.0
     confirmations: int = 1
+    battery_kj: float = 1000.0
     speed: int = 1
     max_steps: int = 1000
     seed: int = 0
@@ -121,6 +125,8 @@ class SearchFlight:
         Probability of each cell, after every `every`-th step; empty for searchers without one.
     every : int
         See `beliefs`.
+    energy_kj : float
+        Used so far [kJ].
     end : str
         How it ended; empty while it goes on.
     """
@@ -129,6 +135,7 @@ class SearchFlight:
     position: list[NDArray[np.float64]] = field(default_factory=list)
     beliefs: list[NDArray[np.float32]] = field(default_factory=list)
     every: int = 1
+    energy_kj: float = 0.0
     end: str = ""
 
     @property
@@ -190,7 +197,13 @@ class LiveSearch(LiveWork):
             world = GridWorld.from_map(self.traced.plan, radio_map, settings.speed)
             mission = world.mission()
             goal = ReadingAbove(settings.goal_rss_dbm, settings.confirmations)
-            task = Task(goal, "none", max_steps=settings.max_steps)
+            task = Task(
+                goal,
+                "none",
+                energy=MultirotorEnergy(),
+                battery_kj=settings.battery_kj,
+                max_steps=settings.max_steps,
+            )
             sight = Observation(None, cell=True, fluctuation=Fluctuation(settings.sigma_db))
             at_goal = goal.cells(mission)[0]
             if not at_goal.any():
@@ -225,9 +238,11 @@ class LiveSearch(LiveWork):
                 flight.beliefs.append(np.array(policy.belief, dtype=np.float32))
             _, status = flyer.step(action)
             seen = flyer.seen()
+            flight.energy_kj = flyer.energy_kj
             flight.position.append(world.position[seen.cell])
             yield status
         here = world.rss_dbm[seen.cell] > settings.goal_rss_dbm
-        flight.end = "time is over"
+        is_empty = flight.energy_kj >= settings.battery_kj
+        flight.end = "battery is empty" if is_empty else "time is over"
         if status == stepping.FOUND:
             flight.end = "found" if here else "false alarm"

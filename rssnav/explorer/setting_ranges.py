@@ -49,6 +49,7 @@ SEARCH = {
     "goal_rss_dbm": TRAINING["goal_rss_dbm"],
     "sigma_db": Range("Fluctuation \u03c3 [dB]", 0.0, 20.0, 0.5),
     "confirmations": Range("Readings to confirm", 1, 100, whole=True),
+    "battery_kj": Range("Battery [kJ]", 0.1, 1000.0),
     "seed": TRAINING["seed"],
 }
 LEARNING = {

@@ -123,6 +123,11 @@ class Flyer:
         kernel.step_running(self.moves, self.sensor, self.fleet, np.array([action]))
         return float(self.fleet.reward[0]), int(self.fleet.status[0])
 
+    @property
+    def energy_kj(self) -> float:
+        """Energy used since the episode began [kJ]; 0 without a model."""
+        return float(self.fleet.real[0, stepping.ENERGY_J]) / 1000.0
+
     def mask(self) -> NDArray[np.bool_]:
         """Possible actions (8,), a copy."""
         mode, cell = self.fleet.whole[0, :2]

@@ -25,6 +25,7 @@ from rssnav.explorer.session import Session
 from rssnav.explorer.tracing import MapCache, TracedMap
 from rssnav.maps import make_map
 from rssnav.missions import RandomPolicy
+from rssnav.missions.energy import MultirotorEnergy
 
 pytestmark = pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")  # of Panel
 
@@ -87,6 +88,14 @@ def test_a_flight_ends_after_its_steps(traced: TracedMap) -> None:
     search = flown(traced, SearchSettings(("Random walk", "Frontier"), GOAL_DBM, max_steps=3))
     assert [flight.end for flight in search.flights] == ["time is over"] * 2
     assert search.steps == 3
+
+
+def test_a_flight_ends_when_its_battery_is_empty(traced: TracedMap) -> None:
+    settings = SearchSettings(("Random walk", "Frontier"), GOAL_DBM, battery_kj=0.5)
+    search, largest_j = flown(traced, settings), MultirotorEnergy().step_j(np.full(8, 2.0)).max()
+    for flight in search.flights:
+        assert flight.end == "battery is empty"
+        assert 0.5 <= flight.energy_kj < 0.5 + largest_j / 1000.0
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.2])
