@@ -223,7 +223,7 @@ def policy_of(text: str, track: str, name: str | None = None) -> PolicySpec:
     try:
         program = import_module(module)
         make = getattr(program, function)
-    except (ImportError, AttributeError, ValueError) as error:
+    except (ImportError, AttributeError, ValueError, SystemExit) as error:
         raise BenchmarkError(
             f"policy {text!r}: {error}; expected module:function with a function that takes a "
             "Briefing and returns a policy"
@@ -234,6 +234,11 @@ def policy_of(text: str, track: str, name: str | None = None) -> PolicySpec:
     return PolicySpec(name or function, known, make, source)
 
 
+def _exited(name: str, exit_: SystemExit) -> BenchmarkError:
+    """Error of a policy that would end the benchmark without a word."""
+    return BenchmarkError(f"policy {name!r}: it called exit({exit_.code!r}); expected it to return")
+
+
 class Guarded:
     """A policy whose impossible actions are counted as collisions and become hovering.
 
@@ -242,6 +247,20 @@ class Guarded:
     policy : Policy
         Who acts.
     """
+
+    @classmethod
+    def made(cls, spec: PolicySpec, briefing: Briefing) -> Guarded:
+        """Make a policy.
+
+        Raises
+        ------
+        BenchmarkError
+            When it calls exit.
+        """
+        try:
+            return cls(spec.make(briefing))
+        except SystemExit as exit_:
+            raise _exited(spec.name, exit_) from exit_
 
     def __init__(self, policy: Policy) -> None:
         for method in ("begin", "act"):
@@ -255,8 +274,17 @@ class Guarded:
         return getattr(self._policy, "name", "policy")
 
     def begin(self, generator: np.random.Generator) -> None:
-        """Begin a flight."""
-        self._policy.begin(generator)
+        """Begin a flight.
+
+        Raises
+        ------
+        BenchmarkError
+            When the policy calls exit.
+        """
+        try:
+            self._policy.begin(generator)
+        except SystemExit as exit_:
+            raise _exited(self.name, exit_) from exit_
 
     def act(self, observation: Seen, mask: NDArray[np.bool_]) -> int:
         """Return the policy's action, or hover where it is impossible.
@@ -264,9 +292,12 @@ class Guarded:
         Raises
         ------
         BenchmarkError
-            For what is no whole number.
+            For what is no whole number, and when the policy calls exit.
         """
-        chosen: object = self._policy.act(observation, mask.copy())
+        try:
+            chosen: object = self._policy.act(observation, mask.copy())
+        except SystemExit as exit_:
+            raise _exited(self.name, exit_) from exit_
         try:
             action = index(chosen)  # pyright: ignore[reportArgumentType]
         except TypeError:

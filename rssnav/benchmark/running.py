@@ -267,7 +267,7 @@ def _hash(rows: object) -> str:
 def _record(spec: PolicySpec, condition: Condition, worlds: _Worlds, extent: Extent) -> Record:
     building, mission = worlds.of(condition)
     world, task = condition.world(mission), condition.task
-    policy = Guarded(spec.make(Briefing(condition, spec.track, building, mission)))
+    policy = Guarded.made(spec, Briefing(condition, spec.track, building, mission))
     sight = condition.observation(world_seen=spec.track == "world")
     fly(world, replace(task, max_steps=_WARMING_S), sight, policy, episodes=1)
     policy.collisions = 0

@@ -279,6 +279,36 @@ def test_masks_cannot_be_forged_and_what_is_no_action_is_named():
             Guarded(Forger(action)).act(None, np.ones(8, dtype=bool))
 
 
+class Leaver:
+    """Calls exit when it begins, or acts."""
+
+    def __init__(self, at: str) -> None:
+        self.at = at
+
+    def begin(self, generator):
+        self.leave("begin")
+
+    def act(self, observation, mask):
+        self.leave("act")
+
+    def leave(self, at: str) -> None:
+        if at == self.at:
+            raise SystemExit(0)
+
+
+@pytest.mark.parametrize("at", ["make", "begin", "act"])
+def test_a_policy_that_calls_exit_is_told(at: str):
+    def make(_briefing: Briefing) -> Leaver:
+        leaver = Leaver(at)
+        leaver.leave("make")
+        return leaver
+
+    with pytest.raises(BenchmarkError, match=r"policy '\w+': it called exit\(0\)"):
+        policy = Guarded.made(PolicySpec("leaver", "RSS", make), Briefing(None, "RSS", None, None))
+        policy.begin(np.random.default_rng(0))
+        policy.act(None, np.ones(8, dtype=bool))
+
+
 WALK = PolicySpec("walk", "RSS", lambda _: RandomPolicy())
 EAST = PolicySpec("east", "RSS", lambda _: Stubborn())
 
