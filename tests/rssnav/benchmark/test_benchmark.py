@@ -303,10 +303,13 @@ def test_a_policy_that_calls_exit_is_told(at: str):
         leaver.leave("make")
         return leaver
 
-    with pytest.raises(BenchmarkError, match=r"policy '\w+': it called exit\(0\)"):
+    def act() -> int:
         policy = Guarded.made(PolicySpec("leaver", "RSS", make), Briefing(None, "RSS", None, None))
         policy.begin(np.random.default_rng(0))
-        policy.act(None, np.ones(8, dtype=bool))
+        return policy.act(None, np.ones(8, dtype=bool))
+
+    with pytest.raises(BenchmarkError, match=r"policy '\w+': it called exit\(0\)"):
+        act()
 
 
 WALK = PolicySpec("walk", "RSS", lambda _: RandomPolicy())
