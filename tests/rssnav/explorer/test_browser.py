@@ -162,7 +162,7 @@ def test_two_searchers_fly_side_by_side(tab) -> None:
     tab.choose("Search")
     tab.page.get_by_label("Compared with").select_option("Frontier")
     tab.page.get_by_role("button", name="Fly").click()
-    ended = tab.page.get_by_text(re.compile(r"^found, \d+ steps$"))
+    ended = tab.page.get_by_text(re.compile(r"^found, \d+ steps, [\d.]+ kJ$"))
     ended.nth(1).wait_for()
     tab.page.get_by_text(re.compile(r"Frontier: step (\d+) of \1$")).wait_for()
     tab.page.locator("button.first:visible").click()
