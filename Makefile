@@ -22,7 +22,8 @@ install: $(VENV)/installed ## make the virtual environment and install everythin
 $(VENV)/installed: pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "rssnav needs Python 3.11 or newer, this is " + sys.version.split()[0] + ": call make PYTHON=python3.11")'
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,docs]'
+	@echo 'installing into $(VENV), which takes one to two minutes'
+	$(BIN)/python -m pip install $$(test -t 1 || echo --quiet) --disable-pip-version-check --constraint constraints.txt --editable '.[dev,docs]'
 	@touch $@
 
 maps: install ## compute the RSS maps of both scenarios that are not current

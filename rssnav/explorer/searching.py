@@ -208,7 +208,8 @@ class LiveSearch(LiveWork):
             at_goal = goal.cells(mission)[0]
             if not at_goal.any():
                 raise ValueError(
-                    f"no cell has an RSS above {settings.goal_rss_dbm:g} dBm: choose a lower goal"
+                    f"no cell has an RSS above {settings.goal_rss_dbm:g} dBm; the strongest that can "
+                    f"be reached has {float(np.max(world.rss_dbm)):.1f} dBm: choose a lower goal"
                 )
             self.shortest_steps = shortest_path(world, at_goal).steps
             flying = [
