@@ -207,9 +207,10 @@ class LiveSearch(LiveWork):
             sight = Observation(None, cell=True, fluctuation=Fluctuation(settings.sigma_db))
             at_goal = goal.cells(mission)[0]
             if not at_goal.any():
+                largest_dbm = float(np.max(world.rss_dbm))
                 raise ValueError(
-                    f"no cell has an RSS above {settings.goal_rss_dbm:g} dBm; the strongest that can "
-                    f"be reached has {float(np.max(world.rss_dbm)):.1f} dBm: choose a lower goal"
+                    f"no cell has an RSS above {settings.goal_rss_dbm:g} dBm, the largest is "
+                    f"{largest_dbm:.1f} dBm: choose a lower goal"
                 )
             self.shortest_steps = shortest_path(world, at_goal).steps
             flying = [
