@@ -111,7 +111,7 @@ together. A cell is dark where it has no path, but more than -120 dBm with the w
 median over cells of what `left_out_db` certifies. The bound counts every path that could exist in
 the beams that were not grown; it says little in such a building.
 
-A number of transmissions is worse in both ways: in the flat it takes seven times as long, in
+A number of transmissions is worse in both ways: in the flat it takes ten times as long, in
 the offices it leaves out most of the power, and in the large one most of the cells. So the preset
 `building` has no number, and a range of 15 dB: it leaves out 0.2 to 0.5 dB of most cells, which
 is little beside the 4 dB that a traced level is [off](validation.md) from a measured one.
