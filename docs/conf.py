@@ -41,7 +41,10 @@ napoleon_attr_annotations = False
 napoleon_custom_sections = [("Attributes", "params_style")]
 autosummary_context = {"properties_of": properties_of}
 templates_path = ["_templates"]
-suppress_warnings = ["ref.python"]  # fields of one name in two classes
+suppress_warnings = [
+    "config.cache",  # of the function in autosummary_context
+    "ref.python",  # fields of one name in two classes
+]
 sphinx_gallery_conf = {
     "examples_dirs": "gallery",
     "gallery_dirs": "examples",
