@@ -337,8 +337,8 @@ def transmit_strip(
 ) -> int:
     """Write the beams that go through a solid wall; return the next row.
 
-    `place` is as for `add_child`, `scratch` for `split_strip`; `loss` holds limits, incidence and
-    fraction of the power for `losses.is_strong`.
+    `place` is as for `add_child`, `scratch` for `split_strip`; `loss` holds limits and fraction of
+    the power for `strip_losses.has_strong_way`.
     """
     (i, n, e), (work, out, left_out), (limits, kept) = place, scratch, loss
     order = int(tree.link[i, ORDER])
