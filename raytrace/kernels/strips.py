@@ -255,9 +255,14 @@ def add_child(
 
 @jit(inner=True)
 def spread_on(
-    view: PlanView, frame: Floats, e: int, rays: Floats, n: int
+    view: PlanView, frame: Floats, e: int, rays: Floats, n: int, limits: Limits
 ) -> tuple[Incidence, Spread]:
-    """Incidence on edge e of a beam, whose rays that meet it have n corners, and their spread."""
+    """Incidence on edge e of a beam, whose rays that meet it have n corners, and their spread.
+
+    Neither is read without a limit by loss.
+    """
+    if not limits.loss.is_active:
+        return Incidence(0.0, 0.0, 1.0), Spread((0.0, 0.0), (0.0, 0.0), 0.0, rays, n)
     low = high = rays[0, 1]
     start = end = rays[0, 0]
     for k in range(1, n):
@@ -304,7 +309,7 @@ def split_strip(
         corners = through_edge(view, tree, i, e, work, out)
         if corners == 0:
             continue
-        met, spread = spread_on(view, frame, e, out, corners)
+        met, spread = spread_on(view, frame, e, out, corners, limits)
         for how in (PASSES, IS_MIRRORED):
             possible = may_enter(link, i, view.beyond[e]) if how == 0 else view.profile[e] >= 0
             if not possible:
@@ -349,7 +354,7 @@ def transmit_strip(
         corners = between(tree.frame[i], back, corners, work, out)
         if corners == 0 or not may_enter(tree.link, i, int(view.cell_of[f])):
             continue
-        met, spread = spread_on(view, tree.frame[i], e, out, corners)
+        met, spread = spread_on(view, tree.frame[i], e, out, corners, limits)
         if has_strong_way(limits, order, int(f), (kept, met.nearest), spread, left_out):
             add_child(view, tree, (i, n, f), IS_TRANSMITTED, corners, out, kept)
             n += 1
