@@ -230,8 +230,9 @@ def trace_points(
     evaluation = evaluation_of(scene.slabs, transmitter, config, receive_antenna)
     with Workers(threads, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
-        tracing = workers.run(
-            prepare_within_range, scene, transmitter.position, points, config, guard, evaluation
+        position = transmitter.position
+        tracing, _ = workers.run(
+            prepare_within_range, scene, position, points, config, guard, evaluation, workers.n
         )
         classes = path_classes(tracing.shared_by(workers.n))
         kept = keep_paths(workers, classes, evaluation, len(points), max_left_out, tracing.guard)

@@ -28,7 +28,7 @@ from raytrace.solver.accumulate import Progress, sum_paths
 from raytrace.solver.beam_class import COPIES_OF_PATHS
 from raytrace.solver.dynamic_range import prepare_within_range
 from raytrace.solver.evaluation import evaluation_of
-from raytrace.solver.extruded_classes import cells_bytes, path_classes
+from raytrace.solver.extruded_classes import Reflected, cells_bytes, path_classes
 from raytrace.solver.limits import taking
 from raytrace.solver.path_class import Evaluation
 from raytrace.solver.setup import Tracing
@@ -92,7 +92,7 @@ def trace_paths(
     with Workers(1, stop) as workers:
         guard = workers.guard(memory_limit(max_memory_bytes))
         position = transmitter.position
-        tracing = workers.run(
+        tracing, _ = workers.run(
             prepare_within_range, scene, position, receivers, config, guard, evaluation
         )
         return workers.run(_list_paths, tracing, evaluation, strongest)
@@ -199,10 +199,10 @@ def _maps_at(
         )
         guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
         points, position = grid.points(), transmitters[0].position
-        tracing = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluations[0]
+        traced = workers.run(
+            prepare_within_range, scene, position, points, config, guard, evaluations[0], workers.n
         )
-        found = _sum_paths(workers, tracing, evaluations, run.progress)
+        found = _sum_paths(workers, traced, evaluations, run.progress)
     seconds = (time.perf_counter() - started - compilation.seconds) / len(found)
     straight_m = np.linalg.norm(points - np.array(position), axis=1)
     _warn_of_near_cells(found[0], points)
@@ -342,10 +342,10 @@ def received_power(
         needed_bytes = cells_bytes(scene, len(points), config, workers.n, evaluation.n_pairs)
         guard = taking(guard, needed_bytes, f"{len(points)} points")
         position = transmitter.position
-        tracing = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluation
+        traced = workers.run(
+            prepare_within_range, scene, position, points, config, guard, evaluation, workers.n
         )
-        (sums,) = _sum_paths(workers, tracing, [evaluation], progress)
+        (sums,) = _sum_paths(workers, traced, [evaluation], progress)
     return received_dbm(sums.power, transmitter.power_dbm)
 
 
@@ -359,14 +359,18 @@ def _positions(points: Floats, name: str) -> Floats:
 
 def _sum_paths(
     workers: Workers,
-    tracing: Tracing,
+    traced: tuple[Tracing, Reflected | None],
     evaluations: Sequence[Evaluation],
     progress: Progress | None,
 ) -> list[Sums]:
     """Sum all paths at each receiver of a tracing, with each of several evaluations."""
-    classes = path_classes(tracing.shared_by(workers.n))
+    tracing, known = traced
+    classes = path_classes(tracing.shared_by(workers.n), known)
     max_paths = tracing.config.max_paths
-    return sum_paths(workers, classes, evaluations, max_paths=max_paths, progress=progress)
+    found = sum_paths(workers, classes, evaluations, max_paths=max_paths, progress=progress)
+    for sums in found:
+        sums.left_out[tracing.reachable] += sums.not_grown[0]
+    return found
 
 
 def _warn_of_near_cells(sums: Sums, points: Floats) -> None:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from raytrace.arrays import Complexes, Floats
+from raytrace.arrays import Bools, Complexes, Floats
 from raytrace.kernels.compiling import chosen_by_type, jit
 from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.lanes import (
@@ -39,6 +39,10 @@ class Sums(NamedTuple):
         of the strongest path.
     left_out
         (n,) bound on the power of the paths below the power threshold.
+    not_grown
+        (1,) bound on the power of the paths in beams that are not grown, at any receiver.
+    touched
+        (n,) whether anything may have been added at a receiver.
     bins
         (LEVELS,) paths below the threshold by their bounds, in steps of 1 dB downwards from 0 dB;
         counted only for an infinite threshold.
@@ -49,8 +53,13 @@ class Sums(NamedTuple):
     n_paths: Floats
     moments: Floats
     left_out: Floats
+    not_grown: Floats
+    touched: Bools
     bins: Floats
 
+
+N_BY_RECEIVER = 5
+"""Fields of `Sums` that are added up at each receiver, the first ones."""
 
 LEVELS = 400
 """Rows of `Sums.bins`."""
@@ -71,21 +80,48 @@ def new_sums(n_receivers: int, max_reflections: int, n_pairs: int = 1) -> Sums:
         np.zeros((n_receivers, max_reflections + 1)),
         np.zeros((n_receivers, N_MOMENTS)),
         np.zeros(n_receivers),
+        np.zeros(1),
+        np.zeros(n_receivers, np.bool_),
         np.zeros(LEVELS),
     )
 
 
 def sums_bytes(n_receivers: int, max_reflections: int, n_pairs: int = 1) -> int:
     """Size of `Sums`."""
-    return 8 * (n_receivers * (max_reflections + 8 + 2 * n_pairs) + LEVELS)
+    return 8 * (n_receivers * (max_reflections + 8 + 2 * n_pairs) + LEVELS + 1) + n_receivers
 
 
 def add_sums(total: Sums, part: Sums) -> None:
-    """Add the sums over other paths to `total`."""
-    strongest = np.maximum(total.moments[:, STRONGEST], part.moments[:, STRONGEST])
-    for whole, addend in zip(total, part, strict=True):
+    """Add the sums over other paths to `total`, at the receivers where there are some."""
+    add_touched(total, part)
+    for whole, addend in ((total.not_grown, part.not_grown), (total.bins, part.bins)):
         whole += addend
-    total.moments[:, STRONGEST] = strongest
+
+
+@jit(allocates=False)
+def add_touched(total: Sums, part: Sums) -> None:
+    """Add what `add_sums` adds at each receiver."""
+    for r in range(len(part.touched)):
+        if not part.touched[r]:
+            continue
+        total.touched[r] = True
+        for k in range(part.field.shape[1]):
+            total.field[r, k] += part.field[r, k]
+        total.power[r] += part.power[r]
+        for k in range(part.n_paths.shape[1]):
+            total.n_paths[r, k] += part.n_paths[r, k]
+        strongest = max(total.moments[r, STRONGEST], part.moments[r, STRONGEST])
+        for k in range(STRONGEST):
+            total.moments[r, k] += part.moments[r, k]
+        total.moments[r, STRONGEST] = strongest
+        total.left_out[r] += part.left_out[r]
+
+
+def sums_from(sums: Sums, first: int) -> Sums:
+    """Copy the sums at the receivers from a given one on."""
+    field, power, n_paths, moments, left_out = (a[first:].copy() for a in sums[:N_BY_RECEIVER])
+    rest = sums.not_grown.copy(), sums.touched[first:].copy(), sums.bins.copy()
+    return Sums(field, power, n_paths, moments, left_out, *rest)
 
 
 class Bundle(NamedTuple):

@@ -8,6 +8,8 @@ import numpy as np
 
 from raytrace.arrays import Complexes, Floats, Ints
 from raytrace.kernels.bounds import height_sums
+from raytrace.kernels.building import TraceGeometry
+from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.guard import Guard
 from raytrace.kernels.horizontal_edge_legs import HorizontalEdgeBeams
 from raytrace.kernels.records import Record, new_record, no_record
@@ -39,11 +41,27 @@ HITS, PATHS = "the receivers within the beams", "the paths"
 Beams = TypeVar("Beams", ReflectionBeams, VerticalEdgeBeams, HorizontalEdgeBeams)
 
 
+class HeightSums:
+    """`bounds.height_sums` of a trace, computed once for all of its path classes."""
+
+    def __init__(self, geometry: TraceGeometry) -> None:
+        self._geometry = geometry
+        self._known: tuple[FieldTables, Floats] | None = None
+
+    def of(self, tables: FieldTables) -> Floats:
+        """Return the sums with these tables."""
+        known = self._known
+        if known is None or known[0] is not tables:
+            known = self._known = tables, height_sums(self._geometry, tables)
+        return known[1]
+
+
 class BeamClass(ABC, Generic[Beams]):
     """A `PathClass` whose paths are found by beams from the transmitter or an edge."""
 
-    def __init__(self, tracing: Tracing) -> None:
+    def __init__(self, tracing: Tracing, heights: HeightSums | None = None) -> None:
         self._tracing = tracing
+        self._heights = heights or HeightSums(tracing.geometry)
         self._kept: tuple[Beams, float] | None = None
 
     @abstractmethod
@@ -82,7 +100,7 @@ class BeamClass(ABC, Generic[Beams]):
         geometry, least = self._tracing.geometry, self._least()
         heights = np.zeros((0, 0))
         if len(least) or evaluation.min_power > 0.0:
-            heights = height_sums(geometry, evaluation.tables)
+            heights = self._heights.of(evaluation.tables)
         n_receivers = len(geometry.receivers.xy)
         sums = new_sums(n_receivers, geometry.max_reflections, evaluation.n_pairs)
         return Collector(sums, record, evaluation.min_power, least, heights, guard)
@@ -106,12 +124,12 @@ class BeamClass(ABC, Generic[Beams]):
             batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
             check_whole(guard, done > 0, HITS)
             for evaluation, collector in zip(evaluations, collectors, strict=True):
+                collector.sums.touched[batch.hits.pair[:, 0]] = True
                 self._evaluate(batch, evaluation, collector)
             numbers = numbers[done:]
         check_whole(guard, True, HITS)
-        reachable = self._tracing.reachable
         for collector in collectors:
-            collector.sums.left_out[reachable] += left_out
+            collector.sums.not_grown[0] = left_out
         return [collector.sums for collector in collectors]
 
     def list_paths(self, evaluation: Evaluation, strongest: int | None = None) -> Paths:

@@ -261,7 +261,7 @@ class _Sampler:
         started = time.perf_counter()
         evaluation = evaluation_of(self.scene.slabs, self.transmitter, config)
         position = self.transmitter.position
-        tracing = prepare_within_range(self.scene, position, points, config, guard, evaluation)
+        tracing, _ = prepare_within_range(self.scene, position, points, config, guard, evaluation)
         classes = path_classes(tracing)
         n_classes, chosen = len(classes), _some(classes)
         del classes  # the beams of each are dropped with it
@@ -340,6 +340,7 @@ def _some_beams(n: int) -> list[tuple[Ints, float]]:
 def _seconds_to_add(n_receivers: int, config: TraceConfig) -> float:
     """Return the time to add the sums of a path class to those of the others [s]."""
     total, part = (new_sums(n_receivers, config.max_reflections) for _ in range(2))
+    part.touched[:] = True
     started = time.perf_counter()
     add_sums(total, part)
     return time.perf_counter() - started

@@ -5,15 +5,21 @@ is compared with the least one near the edge of the plan view from which it ente
 """
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from itertools import repeat
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
-from raytrace.arrays import Floats
+from raytrace.arrays import Floats, Ints
 from raytrace.config import TraceConfig
+from raytrace.kernels.beams import CELL
 from raytrace.kernels.guard import Guard
+from raytrace.kernels.sums import Sums, add_sums, sums_from
 from raytrace.scene import Scene
-from raytrace.solver.extruded_classes import Reflections
+from raytrace.solver.extruded_classes import Reflected, Reflections
 from raytrace.solver.loss_limits import limits_from_transmitter
 from raytrace.solver.path_class import Evaluation
 from raytrace.solver.setup import Tracing, prepare, with_receivers
@@ -29,17 +35,23 @@ def prepare_within_range(
     config: TraceConfig,
     guard: Guard,
     evaluation: Evaluation,
-) -> Tracing:
+    threads: int = 1,
+) -> tuple[Tracing, Reflected | None]:
     """Grow the beams from a transmitter, see `setup.prepare`, within `config.dynamic_range_db`.
 
     Paths without a diffraction are compared with the straight one, diffracted ones with all that is
-    reflected and transmitted.
+    reflected and transmitted. The result does not depend on the number of threads.
+
+    Returns
+    -------
+    tracing, known
+        As `extruded_classes.path_classes` takes them.
     """
     limits = limits_from_transmitter(scene, config, evaluation)
     grown_for = evaluation.digest if limits.loss.is_active else None
     if math.isinf(config.dynamic_range_db):
         tracing = prepare(scene, position, receivers, config, guard, limits)
-        return replace(tracing, grown_for=grown_for)
+        return replace(tracing, grown_for=grown_for), None
     grown_for = evaluation.digest
     points = _points(scene, position[2])
     both = np.concatenate([points, receivers])
@@ -51,16 +63,49 @@ def prepare_within_range(
     tracing = replace(prepare(scene, position, both, config, guard, limits), least=power)
     least = power[len(points) :]
     if not config.max_diffractions:
-        return replace(with_receivers(tracing, receivers), least=least, grown_for=grown_for)
-    power = _least(Reflections(tracing).sum_paths(evaluation).power, config, evaluation)
+        return replace(with_receivers(tracing, receivers), least=least, grown_for=grown_for), None
+    reflected = _reflected(tracing, evaluation, threads)
+    power = _least(reflected.power, config, evaluation)
     loss = limits.loss._replace(least=_at_edges(scene, power))
-    return replace(
+    tracing = replace(
         with_receivers(tracing, receivers),
         limits=limits._replace(loss=loss),
         grown_for=grown_for,
         least=least,
         least_diffracted=power[len(points) :],
     )
+    return tracing, Reflected(evaluation, sums_from(reflected, len(points)))
+
+
+def _reflected(tracing: Tracing, evaluation: Evaluation, threads: int) -> Sums:
+    """Sum the paths without a diffraction; each thread takes receivers of its own."""
+    parts = beam_parts(tracing, threads)
+    reflections = Reflections(tracing.shared_by(len(parts)))
+    with ThreadPoolExecutor(len(parts)) as pool:
+        found = list(pool.map(reflections.sum_paths, repeat(evaluation), parts))
+    for part in found[1:]:
+        add_sums(found[0], part)
+    found[0].not_grown[0] = tracing.left_out
+    return found[0]
+
+
+def beam_parts(tracing: Tracing, count: int) -> list[Ints]:
+    """Divide the beams into parts that have no receiver in common, at most so many.
+
+    Cells with a receiver on their common border are in one part.
+    """
+    targets, cells = tracing.targets, tracing.tree.link[:, CELL]
+    n_cells, n_points = len(targets.cell_points) - 1, len(tracing.geometry.receivers.xy)
+    sizes = np.diff(targets.cell_points)
+    within = np.repeat(np.arange(n_cells), sizes), n_cells + targets.number
+    shape = n_cells + n_points, n_cells + n_points
+    groups = connected_components(coo_array((np.ones(len(within[0])), within), shape))[1][:n_cells]
+    work = np.bincount(groups[cells], sizes[cells])
+    part_of, taken = np.zeros(len(work), np.int64), np.zeros(count)
+    for group in np.argsort(-work, kind="stable"):
+        part_of[group] = np.argmin(taken)
+        taken[part_of[group]] += work[group]
+    return [np.flatnonzero(part_of[groups[cells]] == k) for k in range(count) if k == 0 or taken[k]]
 
 
 def _points(scene: Scene, z: float) -> Floats:

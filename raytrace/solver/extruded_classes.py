@@ -1,6 +1,7 @@
 """The path classes of an extruded building: reflected only, over a vertical, a horizontal edge."""
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from raytrace.kernels.reflections import ReflectionBeams, sum_reflections
 from raytrace.kernels.steps import Steps
 from raytrace.kernels.strip_hits import hit_from_strip
 from raytrace.kernels.strips import edge_frame, grow_strips, no_strips
-from raytrace.kernels.sums import sums_bytes
+from raytrace.kernels.sums import Sums, sums_bytes, sums_from
 from raytrace.kernels.unfolding import max_interactions, new_leg
 from raytrace.kernels.vertical_edge_bounds import edge_bounds, no_bounds
 from raytrace.kernels.vertical_edge_legs import (
@@ -44,7 +45,7 @@ from raytrace.kernels.wedge import new_wedge
 from raytrace.kernels.workspace import Collector, new_workspace
 from raytrace.scene import Scene
 from raytrace.solver.accumulate import sums_in_work
-from raytrace.solver.beam_class import BeamClass
+from raytrace.solver.beam_class import BeamClass, HeightSums
 from raytrace.solver.limits import check_whole, nbytes, taking
 from raytrace.solver.loss_limits import (
     Arrivals,
@@ -66,14 +67,45 @@ RECEIVER_BYTES = 240
 LEGS = "the legs to an edge"
 
 
+class Reflected(NamedTuple):
+    """Sums over the paths without a diffraction, and what they were computed with."""
+
+    evaluation: Evaluation
+    sums: Sums
+
+
 class Reflections(BeamClass[ReflectionBeams]):
-    """Line of sight and every sequence of reflections."""
+    """Line of sight and every sequence of reflections.
+
+    Parameters
+    ----------
+    tracing, heights
+        See `BeamClass`.
+    known
+        Sums that were made before, to limit the other classes.
+    """
+
+    def __init__(
+        self,
+        tracing: Tracing,
+        heights: HeightSums | None = None,
+        known: Reflected | None = None,
+    ) -> None:
+        super().__init__(tracing, heights)
+        self._known = known
 
     def _grow(self) -> tuple[ReflectionBeams, float]:
         return ReflectionBeams(self._tracing.tree, no_hits()), self._tracing.left_out
 
     def _least(self) -> Floats:
         return self._tracing.least
+
+    def sum_each(self, evaluations: Sequence[Evaluation], beams: Ints | None = None) -> list[Sums]:
+        """See `PathClass`."""
+        known = self._known
+        if beams is None and known is not None and list(evaluations) == [known.evaluation]:
+            return [sums_from(known.sums, 0)]
+        return super().sum_each(evaluations, beams)
 
     def _n_beams(self, beams: ReflectionBeams) -> int:
         return len(beams.tree.link)
@@ -105,8 +137,14 @@ class Reflections(BeamClass[ReflectionBeams]):
 class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
     """Every path that one vertical edge diffracts."""
 
-    def __init__(self, tracing: Tracing, edge: edges.VerticalEdge, counts: Floats) -> None:
-        super().__init__(tracing)
+    def __init__(
+        self,
+        tracing: Tracing,
+        edge: edges.VerticalEdge,
+        counts: Floats,
+        heights: HeightSums | None = None,
+    ) -> None:
+        super().__init__(tracing, heights)
         self._cells, self._vertex = edge.cells, edge.vertex
         self._edge = VerticalEdgeArrays(
             edge.x, edge.y, *_heights(edge, tracing.scene.height_m), edge.o_face_azimuth,
@@ -190,9 +228,14 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
     """Every path that leaves one side of a horizontal edge (side 0 or 1 of its plan edges)."""
 
     def __init__(
-        self, tracing: Tracing, edge: edges.HorizontalEdge, side: int, counts: Floats
+        self,
+        tracing: Tracing,
+        edge: edges.HorizontalEdge,
+        side: int,
+        counts: Floats,
+        heights: HeightSums | None = None,
     ) -> None:
-        super().__init__(tracing)
+        super().__init__(tracing, heights)
         self._near, self._far = edge.plan_edges[side], edge.plan_edges[1 - side]
         self._edge = HorizontalEdgeArrays(
             edge_frame(tracing.scene.view, self._near), edge.z, 1.0 if edge.wall_above else -1.0,
@@ -317,13 +360,14 @@ def cells_bytes(
     return n_cells * RECEIVER_BYTES + in_work * sums_bytes(n_cells, config.max_reflections, n_pairs)
 
 
-def path_classes(tracing: Tracing) -> list[PathClass]:
+def path_classes(tracing: Tracing, known: Reflected | None = None) -> list[PathClass]:
     """Return the classes that together hold every path of a trace, each path once.
 
     Edges that the transmitter's beams do not meet are left out; those that most beams meet come
-    first, which balances the work of the threads.
+    first, which balances the work of the threads. `known` is of this trace.
     """
-    classes: list[PathClass] = [Reflections(tracing)]
+    heights = HeightSums(tracing.geometry)
+    classes: list[PathClass] = [Reflections(tracing, heights, known)]
     if not tracing.config.max_diffractions:
         return classes
     scene = tracing.scene
@@ -331,12 +375,12 @@ def path_classes(tracing: Tracing) -> list[PathClass]:
     at_wall = np.bincount(tracing.partial_walls[:, 0], minlength=len(scene.view.line))
     counts = continuations(scene, tracing.config)
     vertical = [
-        (at_vertex[e.vertex], OverVerticalEdge(tracing, e, counts.plain))
+        (at_vertex[e.vertex], OverVerticalEdge(tracing, e, counts.plain, heights))
         for e in scene.vertical_edges
     ]
     over = counts.from_horizontal
     horizontal = [
-        (at_wall[list(e.plan_edges)].sum(), OverHorizontalEdge(tracing, e, side, over))
+        (at_wall[list(e.plan_edges)].sum(), OverHorizontalEdge(tracing, e, side, over, heights))
         for e in scene.horizontal_edges
         for side in (0, 1)
     ]
