@@ -232,7 +232,7 @@ def trace_points(
         guard = workers.guard(memory_limit(max_memory_bytes))
         position = transmitter.position
         tracing, _ = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluation, workers.n
+            prepare_within_range, scene, position, points, config, guard, [evaluation], workers.n
         )
         classes = path_classes(tracing.shared_by(workers.n))
         kept = keep_paths(workers, classes, evaluation, len(points), max_left_out, tracing.guard)

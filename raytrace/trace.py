@@ -1,9 +1,11 @@
 """The tracer: scene, transmitter and receivers in; paths, or a map of their sums, out."""
 
+import math
 import platform
 import time
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
 from typing import Any, NamedTuple
@@ -93,7 +95,7 @@ def trace_paths(
         guard = workers.guard(memory_limit(max_memory_bytes))
         position = transmitter.position
         tracing, _ = workers.run(
-            prepare_within_range, scene, position, receivers, config, guard, evaluation
+            prepare_within_range, scene, position, receivers, config, guard, [evaluation]
         )
         return workers.run(_list_paths, tracing, evaluation, strongest)
 
@@ -200,7 +202,7 @@ def _maps_at(
         guard = taking(guard, needed_bytes, f"{grid.x.size} x {grid.y.size} cells")
         points, position = grid.points(), transmitters[0].position
         traced = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluations[0], workers.n
+            prepare_within_range, scene, position, points, config, guard, evaluations, workers.n
         )
         found = _sum_paths(workers, traced, evaluations, run.progress)
     seconds = (time.perf_counter() - started - compilation.seconds) / len(found)
@@ -233,9 +235,12 @@ def compute_radio_maps(
 ) -> TransmitterMaps:
     """Sum every path at each cell of a grid, for each of several transmitters.
 
-    The beams from transmitters at one place, such as those of an access point at several
-    frequencies, are grown once for all, unless a power or a loss limits them: then they hold what
-    is strong at one frequency. The maps are those of `compute_radio_map`.
+    Transmitters at one place, such as those of an access point at several frequencies, share
+    beams and paths. Where numbers limit these, the maps are those of `compute_radio_map`. Where a
+    dynamic range does, transmitters that differ in their frequencies alone share them: the paths
+    are chosen at the lowest frequency, for which the map is that of `compute_radio_map`, and how
+    much is left out at the others is not bounded (`RadioMap.left_out_db` is infinite). Otherwise a
+    least power limits them, and each transmitter is traced alone.
 
     Parameters
     ----------
@@ -271,12 +276,13 @@ def compute_radio_maps(
 
 def _together(transmitters: Mapping[str, Transmitter], config: TraceConfig) -> list[list[str]]:
     """Names of transmitters, those that beams can be grown once for together."""
-    if config.is_limited:
+    if config.is_limited and math.isinf(config.dynamic_range_db):
         return [[name] for name in transmitters]
     groups: dict[object, list[str]] = {}
     for name, each in transmitters.items():
-        groups.setdefault(each.position, []).append(name)
-    return list(groups.values())
+        key = replace(each, frequency_hz=1e9) if config.is_limited else each.position
+        groups.setdefault(key, []).append(name)
+    return [sorted(group, key=lambda n: transmitters[n].frequency_hz) for group in groups.values()]
 
 
 PARTS = 1000
@@ -343,7 +349,7 @@ def received_power(
         guard = taking(guard, needed_bytes, f"{len(points)} points")
         position = transmitter.position
         traced = workers.run(
-            prepare_within_range, scene, position, points, config, guard, evaluation, workers.n
+            prepare_within_range, scene, position, points, config, guard, [evaluation], workers.n
         )
         (sums,) = _sum_paths(workers, traced, [evaluation], progress)
     return received_dbm(sums.power, transmitter.power_dbm)
@@ -368,8 +374,9 @@ def _sum_paths(
     classes = path_classes(tracing.shared_by(workers.n), known)
     max_paths = tracing.config.max_paths
     found = sum_paths(workers, classes, evaluations, max_paths=max_paths, progress=progress)
-    for sums in found:
-        sums.left_out[tracing.reachable] += sums.not_grown[0]
+    for k, sums in enumerate(found):
+        is_bounded = k == 0 or not len(tracing.least)
+        sums.left_out[tracing.reachable] += sums.not_grown[0] if is_bounded else math.inf
     return found
 
 

@@ -77,6 +77,40 @@ class FieldTables(NamedTuple):
     unknown: Unknown | None = None
 
 
+class FrequencyTables(NamedTuple):
+    """Field tables that the same paths are evaluated with, such as those of n frequencies.
+
+    Attributes
+    ----------
+    first
+        The first ones. The power of paths is compared with thresholds by these.
+    wavelength
+        (n,) [m]
+    reflection, transmission, transmit, receive, patterns
+        Those of all n, along one more axis, the first.
+    """
+
+    first: FieldTables
+    wavelength: Floats
+    reflection: Floats
+    transmission: Floats
+    transmit: Floats
+    receive: Floats
+    patterns: tuple[Floats, Floats]
+
+
+@jit(inline=True)
+def tables_at(every: FrequencyTables, f: int) -> FieldTables:
+    """Tables number f, as far as fields depend on them; the bounds are those of the first."""
+    first = every.first
+    return FieldTables(
+        every.wavelength[f], first.slab_rows, every.reflection[f], every.transmission[f],
+        first.max_reflectance, first.peak_gain, first.transition, first.cis, every.transmit[f],
+        every.receive[f], (every.patterns[0][f], every.patterns[1][f]), first.azimuths,
+        first.unknown,
+    )  # fmt: skip
+
+
 @jit(inline=True)
 def row_and_fraction(t: Lanes, steps: int) -> tuple[Lanes, Lanes]:
     """Row below, and fraction of the step above it, in a table of that many steps and one more."""

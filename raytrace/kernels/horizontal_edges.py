@@ -17,7 +17,7 @@ from raytrace.kernels.bounds import (
 )
 from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
-from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.field_tables import FieldTables, FrequencyTables, tables_at
 from raytrace.kernels.guard import is_stopped
 from raytrace.kernels.horizontal_edge_bounds import distance_bins
 from raytrace.kernels.horizontal_edge_field import (
@@ -54,12 +54,12 @@ from raytrace.kernels.losses import NEGLIGIBLE
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.records import Record, record_paths
 from raytrace.kernels.strips import FRACTION, StripTree
-from raytrace.kernels.sums import Bundle, empty_bundle, with_path
+from raytrace.kernels.sums import add_path
 from raytrace.kernels.validity import OFFSET_M, one_sided_weight, validity_weight
 from raytrace.kernels.workspace import (
     Collector,
     Workspace,
-    add_bundle,
+    add_bundles,
     add_left_out,
     apply_power_threshold,
     count_path,
@@ -151,15 +151,14 @@ def weight_inside(u: Lanes, low: Lanes, high: Lanes) -> Lanes:
 
 @jit(inner=True, fast=True)
 def add_edge_paths(
-    bundle: Bundle,
     geometry: TraceGeometry,
-    tables: FieldTables,
+    every: FrequencyTables,
     trees: tuple[Tree, StripTree],
     path: EdgePath,
     here: tuple[Block, Lanes],
     work: EdgeWorkspace,
     record: Record,
-) -> Bundle:
+) -> None:
     """Add paths over an edge; one-sided evaluations of those that graze another edge.
 
     `here` holds the receivers, and the weights of the paths.
@@ -173,17 +172,18 @@ def add_edge_paths(
         weight = weight_here * validity_weight(n_transmissions, geometry.max_transmissions)
         weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.25)
         if any_of(weight > 0.0):
-            gain = edge_gain(
-                geometry, tables, path, legs, trees[0].beam, offsets, n_transmissions, work
-            )
             count_path(work.workspace, path.order, weight)
-            bundle = with_path(bundle, gain, excess, weight, legs.arriving)
-            if record.used[0] >= 0:
-                at, numbers = (block.first, block.n), (path.image_in, path.image_out, side)
-                record_paths(record, at, path.leg, numbers, gain, weight)
+            for f in range(len(every.wavelength)):
+                tables, images = tables_at(every, f), trees[0].beam
+                gain = edge_gain(
+                    geometry, tables, path, legs, images, offsets, n_transmissions, work
+                )
+                add_path(work.workspace.bundles[f], gain, excess, weight, legs.arriving)
+                if record.used[0] >= 0:
+                    at, numbers = (block.first, block.n), (path.image_in, path.image_out, side)
+                    record_paths(record, at, path.leg, numbers, gain, weight)
         if not any_of(grazing):
             break
-    return bundle
 
 
 @jit(inner=True, fast=True)
@@ -307,17 +307,17 @@ def arriving_strongly(
 
 @jit(inline=True, fast=True)
 def add_images(
-    bundle: Bundle,
     geometry: TraceGeometry,
-    tables: FieldTables,
+    every: FrequencyTables,
     beams: HorizontalEdgeBeams,
     here: tuple[Block, Seen, Arriving],
     shadow: Floats,
     work: EdgeWorkspace,
     collector: Collector,
-) -> Bundle:
+) -> None:
     """Add the paths from one image of the transmitter, one for every pair of image heights."""
     (block, seen, way), edge, workspace = here, beams.edge, work.workspace
+    tables = every.first
     p, x, h = way.p, beams.images.x[way.p], beams.images.h[way.p]
     z_in, bounces, one = geometry.transmitter_z, geometry.image_bounces, (1.0, lanes_of(1.0))
     is_bounded, half = has_threshold(collector), (lanes_of(0.0), lanes_of(0.0))
@@ -346,16 +346,15 @@ def add_images(
                 weight = apply_power_threshold(collector, workspace, way.least, bound, weight, one)
             if any_of(weight > 0.0):
                 trees = beams.tree, beams.strips
-                bundle = add_edge_paths(
-                    bundle, geometry, tables, trees, path, (block, weight), work, collector.record
+                add_edge_paths(
+                    geometry, every, trees, path, (block, weight), work, collector.record
                 )
-    return bundle
 
 
 @jit(fast=True, allocates=False)
 def sum_horizontal_edge(
     geometry: TraceGeometry,
-    tables: FieldTables,
+    every: FrequencyTables,
     beams: HorizontalEdgeBeams,
     shadow: Floats,
     work: EdgeWorkspace,
@@ -365,7 +364,7 @@ def sum_horizontal_edge(
 
     Parameters
     ----------
-    geometry, tables
+    geometry, every
         The geometry of the trace, and the tables of its fields.
     beams
         The edge, the beams to it and from it, and the receivers.
@@ -377,6 +376,7 @@ def sum_horizontal_edge(
         Added to.
     """
     edge, images, hits, workspace = beams.edge, beams.images, beams.hits, work.workspace
+    tables = every.first
     is_bounded, at_1m = has_threshold(collector), at_one_metre(tables)
     behind = 0.25 * (1.0 + math.sqrt(shadow[0])) ** 2 if is_bounded else 0.0
     first = int(np.int64(0))  # a literal would be compiled as a type of its own
@@ -389,7 +389,7 @@ def sum_horizontal_edge(
         bins, over = distance_bins(seen.h), lanes_of(math.inf)
         out = geometry.max_reflections - int(beams.strips.link[block.beam, ORDER])
         kept = beams.strips.frame[block.beam, FRACTION]
-        bundle, p = empty_bundle(tables), int(np.int64(0))
+        p = int(np.int64(0))
         while p < len(images.order):
             left = out - int(images.order[p])
             if left < 0 or is_stopped(collector.guard):
@@ -413,8 +413,8 @@ def sum_horizontal_edge(
                 way = arriving_strongly(tables, images, seen, way, limit, workspace, collector)
             if any_of(way.weight > 0.0):
                 here = block, seen, way
-                bundle = add_images(bundle, geometry, tables, beams, here, shadow, work, collector)
+                add_images(geometry, every, beams, here, shadow, work, collector)
             p += 1
-        add_bundle(collector.sums, workspace, block.n, bundle)
+        add_bundles(collector.sums, workspace, block.n)
         if is_bounded:
             add_left_out(collector.sums, workspace, block.n)

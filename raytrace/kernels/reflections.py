@@ -5,18 +5,28 @@ from typing import NamedTuple
 
 import numpy as np
 
+from raytrace.arrays import Floats
 from raytrace.kernels.beam_hits import Hits
 from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.blocks import next_block
 from raytrace.kernels.bounds import all_heights, free_space, image_bound, leg_bound
-from raytrace.kernels.building import TraceGeometry
+from raytrace.kernels.building import Building, TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
-from raytrace.kernels.field_tables import FieldTables, phasor
+from raytrace.kernels.field_tables import FieldTables, FrequencyTables, phasor, tables_at
 from raytrace.kernels.guard import is_stopped
-from raytrace.kernels.lanes import all_false, any_of, lanes_of, load, minimum
+from raytrace.kernels.lanes import (
+    ComplexLanes,
+    Lanes,
+    MatrixLanes,
+    all_false,
+    any_of,
+    lanes_of,
+    load,
+    minimum,
+)
 from raytrace.kernels.records import record_paths
-from raytrace.kernels.sums import empty_bundle, with_path
+from raytrace.kernels.sums import add_path
 from raytrace.kernels.unfolding import Leg, unfold
 from raytrace.kernels.validity import (
     ONE_SIDED_OFFSETS_M,
@@ -29,7 +39,7 @@ from raytrace.kernels.waves import launch, receive
 from raytrace.kernels.workspace import (
     Collector,
     Workspace,
-    add_bundle,
+    add_bundles,
     add_left_out,
     apply_power_threshold,
     count_path,
@@ -45,10 +55,48 @@ class ReflectionBeams(NamedTuple):
     hits: Hits
 
 
+class Legs(NamedTuple):
+    """Eight legs from the transmitter to receivers, of one beam.
+
+    Attributes
+    ----------
+    leg, n, length
+        The legs, their interactions, and horizontal lengths [m].
+    departure, arriving
+        Horizontal directions in which they leave, and from which they come.
+    """
+
+    leg: Leg
+    n: int
+    length: Lanes
+    departure: tuple[Lanes, Lanes]
+    arriving: tuple[Lanes, Lanes]
+
+
+@jit(inline=True, fast=True)
+def gain_along(
+    building: Building,
+    tables: FieldTables,
+    legs: Legs,
+    slope: Lanes,
+    bounces: int,
+    heights: tuple[Lanes, float],
+    seen: Floats,
+) -> tuple[ComplexLanes | MatrixLanes, Lanes]:
+    """Gains of paths, and their lengths [m]; for `heights` and `seen` see `field.propagate`."""
+    ray = new_ray(building, tables, slope, bounces)
+    wave = launch(tables, legs.departure, ray.sin_elevation)
+    wave = propagate(building, tables, legs.leg, legs.n, legs.length, ray, heights, seen, wave)
+    distance = legs.length * ray.sec_elevation
+    phase = phasor(tables.cis, distance * (1.0 / tables.wavelength))
+    spreading = (tables.wavelength / (4.0 * math.pi)) / distance
+    return receive(tables, wave, legs.arriving) * (phase * spreading), distance
+
+
 @jit(fast=True, allocates=False)
 def sum_reflections(
     geometry: TraceGeometry,
-    tables: FieldTables,
+    every: FrequencyTables,
     beams: ReflectionBeams,
     leg: Leg,
     workspace: Workspace,
@@ -58,7 +106,7 @@ def sum_reflections(
 
     Parameters
     ----------
-    geometry, tables
+    geometry, every
         The geometry of the trace, and the tables of its fields.
     beams
         Beams and receivers.
@@ -67,7 +115,7 @@ def sum_reflections(
     collector
         Added to.
     """
-    (tree, hits), building, wavelength = beams, geometry.building, tables.wavelength
+    (tree, hits), building, tables = beams, geometry.building, every.first
     z_transmitter = geometry.transmitter[2]
     z_root = lanes_of(z_transmitter)
     zero = first = int(np.int64(0))  # a literal would be compiled as a type of its own
@@ -94,7 +142,6 @@ def sum_reflections(
             weight_here = apply_power_threshold(
                 collector, workspace, least, bound, weight_here, several
             )
-        bundle = empty_bundle(tables)
         k, side, grazing = zero, zero, all_false()
         while k < n_images:
             slope = (load(workspace.image_z[k]) - z_transmitter) * inv_length
@@ -108,20 +155,19 @@ def sum_reflections(
                     collector, workspace, least, of_image, weight, (1.0, lanes_of(1.0))
                 )
             if any_of(weight > 0.0):
-                ray = new_ray(building, tables, slope, geometry.image_bounces[k])
-                wave = launch(tables, (ux, uy), ray.sin_elevation)
-                heights, seen = (z_root, offset), workspace.coefficients
-                wave = propagate(building, tables, leg, n, length, ray, heights, seen, wave)
-                distance = length * ray.sec_elevation
-                phase = phasor(tables.cis, distance * (1.0 / wavelength))
-                spreading = (wavelength / (4.0 * math.pi)) / distance
-                gain = receive(tables, wave, arriving) * (phase * spreading)
-                count_path(workspace, order + ray.bounces, weight)
-                bundle = with_path(bundle, gain, distance - block.straight, weight, arriving)
-                if collector.record.used[0] >= 0:
-                    at = (block.first, block.n)
-                    record_paths(collector.record, at, -1, (-1, k, side), gain, weight)
+                legs, bounces = Legs(leg, n, length, (ux, uy), arriving), geometry.image_bounces[k]
+                count_path(workspace, order + bounces, weight)
+                for f in range(len(every.wavelength)):
+                    heights, seen = (z_root, offset), workspace.coefficients
+                    gain, distance = gain_along(
+                        building, tables_at(every, f), legs, slope, bounces, heights, seen
+                    )
+                    excess = distance - block.straight
+                    add_path(workspace.bundles[f], gain, excess, weight, arriving)
+                    if collector.record.used[0] >= 0:
+                        at = (block.first, block.n)
+                        record_paths(collector.record, at, -1, (-1, k, side), gain, weight)
             k, side = next_evaluation(k, side, grazing)
-        add_bundle(collector.sums, workspace, block.n, bundle)
+        add_bundles(collector.sums, workspace, block.n)
         if is_bounded:
             add_left_out(collector.sums, workspace, block.n)

@@ -5,18 +5,20 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Bools, Complexes, Floats
-from raytrace.kernels.compiling import chosen_by_type, jit
-from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.compiling import jit
 from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
     MatrixLanes,
     complex_of,
+    elements_of,
+    imag_of,
     lanes_of,
-    matrix_of,
+    load,
     maximum,
-    row_of,
+    real_of,
     squared_size,
+    store,
     where_complex,
 )
 
@@ -58,9 +60,6 @@ class Sums(NamedTuple):
     bins: Floats
 
 
-N_BY_RECEIVER = 5
-"""Fields of `Sums` that are added up at each receiver, the first ones."""
-
 LEVELS = 400
 """Rows of `Sums.bins`."""
 
@@ -72,18 +71,31 @@ PAIRS = 4
 """Pairs of polarisations where one is unknown."""
 
 
-def new_sums(n_receivers: int, max_reflections: int, n_pairs: int = 1) -> Sums:
-    """Sums over no paths, with gains between so many pairs of polarisations."""
+def new_sums(
+    n_receivers: int, max_reflections: int, n_pairs: int = 1, shape: tuple[int, ...] = ()
+) -> Sums:
+    """Sums over no paths, with gains between so many pairs of polarisations.
+
+    `shape` is that of further axes in front of those of all arrays.
+    """
     return Sums(
-        np.zeros((n_receivers, n_pairs), np.complex128),
-        np.zeros(n_receivers),
-        np.zeros((n_receivers, max_reflections + 1)),
-        np.zeros((n_receivers, N_MOMENTS)),
-        np.zeros(n_receivers),
-        np.zeros(1),
-        np.zeros(n_receivers, np.bool_),
-        np.zeros(LEVELS),
+        np.zeros((*shape, n_receivers, n_pairs), np.complex128),
+        np.zeros((*shape, n_receivers)),
+        np.zeros((*shape, n_receivers, max_reflections + 1)),
+        np.zeros((*shape, n_receivers, N_MOMENTS)),
+        np.zeros((*shape, n_receivers)),
+        np.zeros((*shape, 1)),
+        np.zeros((*shape, n_receivers), np.bool_),
+        np.zeros((*shape, LEVELS)),
     )
+
+
+def sums_at(sums: Sums, f: int) -> Sums:
+    """Sums number f along the first axis of all arrays."""
+    return Sums(
+        sums.field[f], sums.power[f], sums.n_paths[f], sums.moments[f], sums.left_out[f],
+        sums.not_grown[f], sums.touched[f], sums.bins[f],
+    )  # fmt: skip
 
 
 def sums_bytes(n_receivers: int, max_reflections: int, n_pairs: int = 1) -> int:
@@ -119,57 +131,40 @@ def add_touched(total: Sums, part: Sums) -> None:
 
 def sums_from(sums: Sums, first: int) -> Sums:
     """Copy the sums at the receivers from a given one on."""
-    field, power, n_paths, moments, left_out = (a[first:].copy() for a in sums[:N_BY_RECEIVER])
-    rest = sums.not_grown.copy(), sums.touched[first:].copy(), sums.bins.copy()
-    return Sums(field, power, n_paths, moments, left_out, *rest)
+    return Sums(
+        sums.field[first:].copy(), sums.power[first:].copy(), sums.n_paths[first:].copy(),
+        sums.moments[first:].copy(), sums.left_out[first:].copy(), sums.not_grown.copy(),
+        sums.touched[first:].copy(), sums.bins.copy(),
+    )  # fmt: skip
 
 
-class Bundle(NamedTuple):
-    """Sums over the paths that arrive at eight receivers; see `Sums`."""
+BUNDLE_ROWS = 1 + N_MOMENTS + 2 * PAIRS
+"""Rows of what arrives at eight receivers: power, moments, real and imaginary parts of fields."""
 
-    field: ComplexLanes | MatrixLanes
-    power: Lanes
-    excess: Lanes
-    excess_squared: Lanes
-    cosine: Lanes
-    sine: Lanes
-    strongest: Lanes
-
-
-def _empty(tables: FieldTables) -> Bundle:
-    none = lanes_of(0.0)
-    return Bundle(complex_of(none, none), none, none, none, none, none, none)
-
-
-def _empty_matrices(tables: FieldTables) -> Bundle:
-    none = lanes_of(0.0)
-    zero = complex_of(none, none)
-    row = row_of(zero, zero)
-    return Bundle(matrix_of(row, row), none, none, none, none, none, none)
-
-
-def empty_bundle(tables: FieldTables) -> Bundle:
-    """Sums over no paths, of gains as `waves.receive` returns them."""
-    return _empty(tables) if tables.unknown is None else _empty_matrices(tables)
-
-
-chosen_by_type("unknown", _empty, _empty_matrices)(empty_bundle)
+FIELDS = 1 + N_MOMENTS
+"""First row of the fields."""
 
 
 @jit(inline=True, fast=True)
-def with_path(
-    bundle: Bundle,
+def increase(row: Floats, by: Lanes) -> None:
+    """Add to a row of eight numbers."""
+    store(row, load(row) + by)
+
+
+@jit(inline=True, fast=True)
+def add_path(
+    rows: Floats,
     gain: ComplexLanes | MatrixLanes,
     excess: Lanes,
     weight: Lanes,
     direction: tuple[Lanes, Lanes],
-) -> Bundle:
-    """Sums with one more path to each receiver.
+) -> None:
+    """Add one more path to each receiver.
 
     Parameters
     ----------
-    bundle
-        The sums.
+    rows
+        (BUNDLE_ROWS, 8) added to.
     gain, excess, weight
         Of the paths: gains, lengths beyond the straight line [m], weights.
     direction
@@ -179,12 +174,12 @@ def with_path(
     size = squared_size(counted)
     power = size * weight
     power_excess = power * excess
-    return Bundle(
-        bundle.field + counted * weight,
-        bundle.power + power,
-        bundle.excess + power_excess,
-        bundle.excess_squared + power_excess * excess,
-        bundle.cosine + power * direction[0],
-        bundle.sine + power * direction[1],
-        maximum(bundle.strongest, size),
-    )
+    increase(rows[0], power)
+    increase(rows[1 + EXCESS], power_excess)
+    increase(rows[1 + EXCESS_SQUARED], power_excess * excess)
+    increase(rows[1 + COSINE], power * direction[0])
+    increase(rows[1 + SINE], power * direction[1])
+    store(rows[1 + STRONGEST], maximum(load(rows[1 + STRONGEST]), size))
+    for k, field in enumerate(elements_of(counted * weight)):
+        increase(rows[FIELDS + 2 * k], real_of(field))
+        increase(rows[FIELDS + 2 * k + 1], imag_of(field))

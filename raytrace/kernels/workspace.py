@@ -12,17 +12,14 @@ from raytrace.kernels.lanes import (
     WIDTH,
     Lanes,
     any_of,
-    elements_of,
-    imag_of,
     lane,
     lanes_of,
     load,
-    real_of,
     store,
     where,
 )
 from raytrace.kernels.records import Record
-from raytrace.kernels.sums import EXCESS, N_MOMENTS, PAIRS, STRONGEST, Bundle, Sums
+from raytrace.kernels.sums import BUNDLE_ROWS, EXCESS, FIELDS, STRONGEST, Sums
 
 
 class Collector(NamedTuple):
@@ -31,7 +28,8 @@ class Collector(NamedTuple):
     Attributes
     ----------
     sums, record
-        Sums over paths, and single paths.
+        Sums over paths with each of several tables, along an axis in front of the others; and
+        single paths.
     min_power
         Paths whose power is known to be below this are left out [fraction of the transmitted].
     least
@@ -67,8 +65,10 @@ class Workspace(NamedTuple):
         (max_reflections + 1, 8) paths to them by reflections.
     left
         (8,) bound on the power of paths to them that are left out.
+    bundles
+        (n_tables, BUNDLE_ROWS, 8) what arrives there, with each of several tables.
     rows, coefficients
-        (2 PAIRS + 1 + N_MOMENTS, 8) and (n_interactions, 4, 8) scratch.
+        (BUNDLE_ROWS, 8) and (n_interactions, 4, 8) scratch.
     """
 
     receivers: Ints
@@ -77,11 +77,12 @@ class Workspace(NamedTuple):
     ways: Ints
     counts: Floats
     left: Floats
+    bundles: Floats
     rows: Floats
     coefficients: Floats
 
 
-def new_workspace(max_reflections: int, n_interactions: int) -> Workspace:
+def new_workspace(max_reflections: int, n_interactions: int, n_tables: int = 1) -> Workspace:
     """Working arrays for paths of that many reflections, whose legs meet no more walls."""
     return Workspace(
         np.zeros(WIDTH, np.int64),
@@ -90,7 +91,8 @@ def new_workspace(max_reflections: int, n_interactions: int) -> Workspace:
         np.zeros(WIDTH, np.int64),
         np.empty((max_reflections + 1, WIDTH)),
         np.zeros(WIDTH),
-        np.empty((2 * PAIRS + 1 + N_MOMENTS, WIDTH)),
+        np.zeros((n_tables, BUNDLE_ROWS, WIDTH)),
+        np.empty((BUNDLE_ROWS, WIDTH)),
         np.empty((n_interactions, 4, WIDTH)),
     )
 
@@ -101,31 +103,29 @@ def count_path(workspace: Workspace, order: int, weight: Lanes) -> None:
     store(workspace.counts[order], load(workspace.counts[order]) + weight)
 
 
-@jit(inline=True)
-def add_bundle(sums: Sums, workspace: Workspace, n: int, bundle: Bundle) -> None:
-    """Add what arrives at the first n receivers of a block to the sums."""
+@jit(inner=True)
+def add_bundles(sums: Sums, workspace: Workspace, n: int) -> None:
+    """Add what arrives at the first n receivers of a block to the sums, and begin anew."""
     total = lanes_of(0.0)
     for k in range(len(workspace.counts)):
         total = total + load(workspace.counts[k])
     if not any_of(total > 0.0):
         return
-    rows, fields = workspace.rows, workspace.rows[1 + N_MOMENTS :]
-    for k, part in enumerate(bundle[1:]):
-        store(rows[k], part)
-    for k, gain in enumerate(elements_of(bundle.field)):
-        store(fields[2 * k], real_of(gain))
-        store(fields[2 * k + 1], imag_of(gain))
-    for j in range(n):
-        r = workspace.receivers[j]
-        for k in range(sums.field.shape[1]):
-            sums.field[r, k] += complex(fields[2 * k, j], fields[2 * k + 1, j])
-        sums.power[r] += rows[0, j]
-        moments = sums.moments[r]
-        for k in range(EXCESS, STRONGEST):
-            moments[k] += rows[1 + k, j]
-        moments[STRONGEST] = max(moments[STRONGEST], rows[1 + STRONGEST, j])
-        for k in range(len(workspace.counts)):
-            sums.n_paths[r, k] += workspace.counts[k, j]
+    for f in range(len(workspace.bundles)):
+        rows, fields = workspace.bundles[f], workspace.bundles[f, FIELDS:]
+        for j in range(n):
+            r = workspace.receivers[j]
+            for k in range(sums.field.shape[2]):
+                sums.field[f, r, k] += complex(fields[2 * k, j], fields[2 * k + 1, j])
+            sums.power[f, r] += rows[0, j]
+            moments = sums.moments[f, r]
+            for k in range(EXCESS, STRONGEST):
+                moments[k] += rows[1 + k, j]
+            moments[STRONGEST] = max(moments[STRONGEST], rows[1 + STRONGEST, j])
+            for k in range(len(workspace.counts)):
+                sums.n_paths[f, r, k] += workspace.counts[k, j]
+        for k in range(len(rows)):
+            store(rows[k], lanes_of(0.0))
 
 
 @jit(inline=True)
@@ -190,11 +190,11 @@ def count_left_out(sums: Sums, bound: Lanes, left: Lanes) -> None:
         power, n_paths = lane(bound, j), lane(left, j)
         if n_paths > 0.0:
             level = int(-10.0 * math.log10(max(power, 1e-39)))
-            sums.bins[max(level, 0)] += n_paths
+            sums.bins[0, max(level, 0)] += n_paths
 
 
 @jit(inner=True)
 def add_left_out(sums: Sums, workspace: Workspace, n: int) -> None:
     """Add what is left out at the first n receivers of a block to the sums."""
     for j in range(n):
-        sums.left_out[workspace.receivers[j]] += workspace.left[j]
+        sums.left_out[0, workspace.receivers[j]] += workspace.left[j]

@@ -15,14 +15,14 @@ from raytrace.kernels.horizontal_edge_legs import HorizontalEdgeBeams
 from raytrace.kernels.records import Record, new_record, no_record
 from raytrace.kernels.reflections import ReflectionBeams
 from raytrace.kernels.steps import PATH_BYTES, STEP_BYTES, Steps, new_steps
-from raytrace.kernels.sums import Sums, new_sums
+from raytrace.kernels.sums import Sums, new_sums, sums_at
 from raytrace.kernels.vertical_edge_legs import VerticalEdgeBeams
 from raytrace.kernels.workspace import Collector
 from raytrace.radio.tables import pairs_of
 from raytrace.results.paths import Paths
 from raytrace.results.step_lanes import with_all_pairs
 from raytrace.solver.limits import check_whole, nbytes, taking
-from raytrace.solver.path_class import Evaluation, KeptRecord
+from raytrace.solver.path_class import Evaluation, KeptRecord, Together, together
 from raytrace.solver.setup import BEAMS, Tracing
 
 HIT_BATCH = 1 << 17
@@ -77,7 +77,7 @@ class BeamClass(ABC, Generic[Beams]):
         """Find receivers within some of the beams; return how many of the beams were taken."""
 
     @abstractmethod
-    def _evaluate(self, beams: Beams, evaluation: Evaluation, collector: Collector) -> None:
+    def _evaluate(self, beams: Beams, group: Together, collector: Collector) -> None:
         """Evaluate the paths of all hits."""
 
     @abstractmethod
@@ -95,14 +95,15 @@ class BeamClass(ABC, Generic[Beams]):
         """See `Tracing.least`."""
         return self._tracing.least_diffracted
 
-    def _collector(self, evaluation: Evaluation, record: Record, guard: Guard) -> Collector:
+    def _collector(self, group: Together, record: Record, guard: Guard) -> Collector:
+        evaluation, shape = group.first, (len(group.numbers),)
         evaluation.check_beams(self._tracing.grown_for)
         geometry, least = self._tracing.geometry, self._least()
         heights = np.zeros((0, 0))
         if len(least) or evaluation.min_power > 0.0:
             heights = self._heights.of(evaluation.tables)
         n_receivers = len(geometry.receivers.xy)
-        sums = new_sums(n_receivers, geometry.max_reflections, evaluation.n_pairs)
+        sums = new_sums(n_receivers, geometry.max_reflections, evaluation.n_pairs, shape)
         return Collector(sums, record, evaluation.min_power, least, heights, guard)
 
     def grow(self) -> int:
@@ -118,19 +119,22 @@ class BeamClass(ABC, Generic[Beams]):
         """See `PathClass`."""
         grown, left_out = self._beams()
         guard = self._guard_beside(grown)
-        collectors = [self._collector(each, no_record(), guard) for each in evaluations]
+        groups = together(tuple(evaluations), len(self._tracing.least) > 0)
+        collectors = [self._collector(each, no_record(), guard) for each in groups]
         numbers = np.arange(self._n_beams(grown)) if beams is None else beams
         while len(numbers):
             batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
             check_whole(guard, done > 0, HITS)
-            for evaluation, collector in zip(evaluations, collectors, strict=True):
-                collector.sums.touched[batch.hits.pair[:, 0]] = True
-                self._evaluate(batch, evaluation, collector)
+            for group, collector in zip(groups, collectors, strict=True):
+                collector.sums.touched[:, batch.hits.pair[:, 0]] = True
+                self._evaluate(batch, group, collector)
             numbers = numbers[done:]
         check_whole(guard, True, HITS)
-        for collector in collectors:
-            collector.sums.not_grown[0] = left_out
-        return [collector.sums for collector in collectors]
+        found: dict[int, Sums] = {}
+        for group, collector in zip(groups, collectors, strict=True):
+            collector.sums.not_grown[:] = left_out
+            found.update((k, sums_at(collector.sums, f)) for f, k in enumerate(group.numbers))
+        return [found[k] for k in range(len(evaluations))]
 
     def list_paths(self, evaluation: Evaluation, strongest: int | None = None) -> Paths:
         """See `PathClass`; the paths are counted first, then recorded."""
@@ -168,12 +172,12 @@ class BeamClass(ABC, Generic[Beams]):
         guard, n_beams = self._guard_beside(grown), self._n_beams(grown)
         beams, done = self._hit(grown, np.arange(n_beams), ALL_HITS, guard)
         check_whole(guard, done == n_beams, HITS)
-        n_paths, record = 0, no_record()
+        (group,), n_paths, record = together((evaluation,), False), 0, no_record()
         for _ in range(2):
             each = self._path_bytes(beams) if path_bytes is None else path_bytes
             taking(guard, n_paths * (each + 3 * 16 * evaluation.n_pairs), PATHS)
             record = new_record(n_paths, evaluation.n_pairs)
-            self._evaluate(beams, evaluation, self._collector(evaluation, record, guard))
+            self._evaluate(beams, group, self._collector(group, record, guard))
             check_whole(self._tracing.guard, True, PATHS)
             n_paths = int(record.used[0])
         return beams, record

@@ -261,7 +261,7 @@ class _Sampler:
         started = time.perf_counter()
         evaluation = evaluation_of(self.scene.slabs, self.transmitter, config)
         position = self.transmitter.position
-        tracing, _ = prepare_within_range(self.scene, position, points, config, guard, evaluation)
+        tracing, _ = prepare_within_range(self.scene, position, points, config, guard, [evaluation])
         classes = path_classes(tracing)
         n_classes, chosen = len(classes), _some(classes)
         del classes  # the beams of each are dropped with it

@@ -5,6 +5,7 @@ is compared with the least one near the edge of the plan view from which it ente
 """
 
 import math
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import repeat
@@ -34,19 +35,21 @@ def prepare_within_range(
     receivers: Floats,
     config: TraceConfig,
     guard: Guard,
-    evaluation: Evaluation,
+    evaluations: Sequence[Evaluation],
     threads: int = 1,
 ) -> tuple[Tracing, Reflected | None]:
     """Grow the beams from a transmitter, see `setup.prepare`, within `config.dynamic_range_db`.
 
     Paths without a diffraction are compared with the straight one, diffracted ones with all that is
-    reflected and transmitted. The result does not depend on the number of threads.
+    reflected and transmitted, both by the first of the evaluations. The result does not depend on
+    the number of threads.
 
     Returns
     -------
     tracing, known
         As `extruded_classes.path_classes` takes them.
     """
+    evaluation = evaluations[0]
     limits = limits_from_transmitter(scene, config, evaluation)
     grown_for = evaluation.digest if limits.loss.is_active else None
     if math.isinf(config.dynamic_range_db):
@@ -64,8 +67,8 @@ def prepare_within_range(
     least = power[len(points) :]
     if not config.max_diffractions:
         return replace(with_receivers(tracing, receivers), least=least, grown_for=grown_for), None
-    reflected = _reflected(tracing, evaluation, threads)
-    power = _least(reflected.power, config, evaluation)
+    reflected = _reflected(tracing, evaluations, threads)
+    power = _least(reflected[0].power, config, evaluation)
     loss = limits.loss._replace(least=_at_edges(scene, power))
     tracing = replace(
         with_receivers(tracing, receivers),
@@ -74,19 +77,21 @@ def prepare_within_range(
         least=least,
         least_diffracted=power[len(points) :],
     )
-    return tracing, Reflected(evaluation, sums_from(reflected, len(points)))
+    at_receivers = [sums_from(sums, len(points)) for sums in reflected]
+    return tracing, Reflected(list(evaluations), at_receivers)
 
 
-def _reflected(tracing: Tracing, evaluation: Evaluation, threads: int) -> Sums:
+def _reflected(tracing: Tracing, evaluations: Sequence[Evaluation], threads: int) -> list[Sums]:
     """Sum the paths without a diffraction; each thread takes receivers of its own."""
     parts = beam_parts(tracing, threads)
     reflections = Reflections(tracing.shared_by(len(parts)))
     with ThreadPoolExecutor(len(parts)) as pool:
-        found = list(pool.map(reflections.sum_paths, repeat(evaluation), parts))
-    for part in found[1:]:
-        add_sums(found[0], part)
-    found[0].not_grown[0] = tracing.left_out
-    return found[0]
+        totals, *others = pool.map(reflections.sum_each, repeat(evaluations), parts)
+    for each, *rest in zip(totals, *others, strict=True):
+        for part in rest:
+            add_sums(each, part)
+        each.not_grown[0] = tracing.left_out
+    return totals
 
 
 def beam_parts(tracing: Tracing, count: int) -> list[Ints]:

@@ -58,7 +58,7 @@ from raytrace.solver.loss_limits import (
     shadow_of,
     strong_arrivals,
 )
-from raytrace.solver.path_class import Evaluation, PathClass
+from raytrace.solver.path_class import Evaluation, PathClass, Together
 from raytrace.solver.setup import BEAMS, Tracing
 
 RECEIVER_BYTES = 240
@@ -70,8 +70,8 @@ LEGS = "the legs to an edge"
 class Reflected(NamedTuple):
     """Sums over the paths without a diffraction, and what they were computed with."""
 
-    evaluation: Evaluation
-    sums: Sums
+    evaluations: list[Evaluation]
+    sums: list[Sums]
 
 
 class Reflections(BeamClass[ReflectionBeams]):
@@ -103,8 +103,8 @@ class Reflections(BeamClass[ReflectionBeams]):
     def sum_each(self, evaluations: Sequence[Evaluation], beams: Ints | None = None) -> list[Sums]:
         """See `PathClass`."""
         known = self._known
-        if beams is None and known is not None and list(evaluations) == [known.evaluation]:
-            return [sums_from(known.sums, 0)]
+        if beams is None and known is not None and list(evaluations) == known.evaluations:
+            return [sums_from(sums, 0) for sums in known.sums]
         return super().sum_each(evaluations, beams)
 
     def _n_beams(self, beams: ReflectionBeams) -> int:
@@ -119,12 +119,10 @@ class Reflections(BeamClass[ReflectionBeams]):
         hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits, guard)
         return beams._replace(hits=hits), done
 
-    def _evaluate(
-        self, beams: ReflectionBeams, evaluation: Evaluation, collector: Collector
-    ) -> None:
+    def _evaluate(self, beams: ReflectionBeams, group: Together, collector: Collector) -> None:
         geometry, leg = self._tracing.geometry, new_leg(beams.tree.link)
-        workspace = new_workspace(geometry.max_reflections, len(leg.types))
-        sum_reflections(geometry, evaluation.tables, beams, leg, workspace, collector)
+        workspace = new_workspace(geometry.max_reflections, len(leg.types), len(group.numbers))
+        sum_reflections(geometry, group.every, beams, leg, workspace, collector)
 
     def _write_points(
         self, beams: ReflectionBeams, record: Record, points: Floats, steps: Steps
@@ -196,18 +194,16 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
         hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits, guard)
         return beams._replace(hits=hits), done
 
-    def _evaluate(
-        self, beams: VerticalEdgeBeams, evaluation: Evaluation, collector: Collector
-    ) -> None:
-        geometry, tables = self._tracing.geometry, evaluation.tables
+    def _evaluate(self, beams: VerticalEdgeBeams, group: Together, collector: Collector) -> None:
+        geometry, tables = self._tracing.geometry, group.first.tables
         leg = new_leg(beams.tree.link)
         bounds = no_bounds()
         if collector.min_power > 0.0 or len(collector.least):
-            shadow = shadow_of(self._tracing.limits, evaluation, self._edge.wedge.o_slab)
+            shadow = shadow_of(self._tracing.limits, group.first, self._edge.wedge.o_slab)
             bounds = edge_bounds(geometry, tables, beams.legs, shadow, self._power_behind)
         most = max(len(leg.types), beams.legs.types.shape[1])
-        workspace = new_workspace(geometry.max_reflections, most)
-        sum_vertical_edge(geometry, tables, beams, bounds, leg, workspace, collector)
+        workspace = new_workspace(geometry.max_reflections, most, len(group.numbers))
+        sum_vertical_edge(geometry, group.every, beams, bounds, leg, workspace, collector)
 
     def _write_points(
         self, beams: VerticalEdgeBeams, record: Record, points: Floats, steps: Steps
@@ -328,14 +324,12 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
         hits, seen, done = hit_from_strip(beams.strips, targets, numbers, max_hits, guard)
         return beams._replace(hits=hits, seen=seen), done
 
-    def _evaluate(
-        self, beams: HorizontalEdgeBeams, evaluation: Evaluation, collector: Collector
-    ) -> None:
-        geometry = self._tracing.geometry
-        work, shadow = new_edge_workspace(geometry.max_reflections, beams), np.empty(0)
+    def _evaluate(self, beams: HorizontalEdgeBeams, group: Together, collector: Collector) -> None:
+        geometry, n = self._tracing.geometry, len(group.numbers)
+        work, shadow = new_edge_workspace(geometry.max_reflections, beams, n), np.empty(0)
         if collector.min_power > 0.0 or len(collector.least):
-            shadow = shadow_of(self._tracing.limits, evaluation, self._edge.wedge.o_slab)
-        sum_horizontal_edge(geometry, evaluation.tables, beams, shadow, work, collector)
+            shadow = shadow_of(self._tracing.limits, group.first, self._edge.wedge.o_slab)
+        sum_horizontal_edge(geometry, group.every, beams, shadow, work, collector)
 
     def _write_points(
         self, beams: HorizontalEdgeBeams, record: Record, points: Floats, steps: Steps

@@ -3,13 +3,13 @@
 import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from raytrace.arrays import Floats, Ints
-from raytrace.kernels.field_tables import FieldTables
+from raytrace.kernels.field_tables import FieldTables, FrequencyTables
 from raytrace.kernels.steps import Steps
 from raytrace.kernels.sums import PAIRS, Sums
 from raytrace.results.paths import Paths
@@ -35,6 +35,13 @@ class Evaluation:
     def n_pairs(self) -> int:
         """Pairs of polarisations that each path has gains between, see `sums.Sums`."""
         return 1 if self.tables.unknown is None else PAIRS
+
+    @property
+    def shapes(self) -> tuple[object, ...]:
+        """Equal for tables that the same kernel can take together."""
+        tables = self.tables
+        arrays = tables.reflection, tables.transmission, tables.transmit, *tables.patterns
+        return *(array.shape for array in arrays), tables.azimuths, tables.unknown
 
     @cached_property
     def digest(self) -> bytes:
@@ -69,6 +76,56 @@ class Evaluation:
     def shadow(self) -> Floats:
         """Bounds on the shadows of sheets, see `slab_bounds.shadow_bounds`."""
         return shadow_bounds(self.tables)
+
+
+class Together(NamedTuple):
+    """Evaluations of the same paths.
+
+    Attributes
+    ----------
+    numbers
+        Which of all evaluations they are.
+    first
+        The first one: by its tables paths are compared with thresholds.
+    every
+        The tables of all.
+    """
+
+    numbers: tuple[int, ...]
+    first: Evaluation
+    every: FrequencyTables
+
+
+@lru_cache(maxsize=2)
+def together(evaluations: tuple[Evaluation, ...], is_limited: bool) -> list[Together]:
+    """Divide evaluations into those of the same paths; they are kept for the next path class.
+
+    Tables must have equal shapes. Where a power limits the paths, each evaluation has its own,
+    unless `is_limited` says that they are limited by the first one.
+    """
+    groups: dict[object, list[int]] = {}
+    for k, each in enumerate(evaluations):
+        alone = k if each.min_power > 0.0 and not is_limited else -1
+        groups.setdefault((alone, each.shapes), []).append(k)
+    return [
+        Together(tuple(ks), evaluations[ks[0]], _joined([evaluations[k].tables for k in ks]))
+        for ks in groups.values()
+    ]
+
+
+def _joined(tables: list[FieldTables]) -> FrequencyTables:
+    def all_of(arrays: list[Floats]) -> Floats:
+        return arrays[0][None] if len(arrays) == 1 else np.stack(arrays)
+
+    return FrequencyTables(
+        tables[0],
+        np.array([one.wavelength for one in tables]),
+        all_of([one.reflection for one in tables]),
+        all_of([one.transmission for one in tables]),
+        all_of([one.transmit for one in tables]),
+        all_of([one.receive for one in tables]),
+        (all_of([one.patterns[0] for one in tables]), all_of([one.patterns[1] for one in tables])),
+    )
 
 
 class KeptRecord(NamedTuple):

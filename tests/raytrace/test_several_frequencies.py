@@ -5,6 +5,7 @@ import pytest
 from rooms import ROOMS, SOURCE
 
 from raytrace import (
+    Antenna,
     Grid,
     HalfWaveDipole,
     Isotropic,
@@ -60,3 +61,38 @@ def test_beams_of_one_place_are_grown_once(
         alone = compute_radio_map(ROOM.scene, transmitter, GRID, config)
         for layer in LAYERS:
             np.testing.assert_array_equal(getattr(maps[name], layer), getattr(alone, layer))
+
+
+RANGE = TraceConfig(2, 1, None, -120.0, dynamic_range_db=20.0)
+SAME_BUT_FREQUENCY = {
+    "5 GHz": Transmitter(SOURCE, frequency_hz=5.2e9),
+    "elsewhere": Transmitter((X + 0.2, Y, Z)),
+    "2.4 GHz": Transmitter(SOURCE),
+}
+
+
+def test_a_range_is_that_of_the_lowest_frequency() -> None:
+    maps = compute_radio_maps(ROOM.scene, SAME_BUT_FREQUENCY, GRID, RANGE)
+    assert list(maps) == list(SAME_BUT_FREQUENCY)
+    for name in ("2.4 GHz", "elsewhere"):
+        alone = compute_radio_map(ROOM.scene, SAME_BUT_FREQUENCY[name], GRID, RANGE)
+        for layer in LAYERS:
+            np.testing.assert_array_equal(getattr(maps[name], layer), getattr(alone, layer))
+    np.testing.assert_array_equal(maps["5 GHz"].path_count, maps["2.4 GHz"].path_count)
+    assert (maps["5 GHz"].left_out_db == np.inf).all()
+
+
+@pytest.mark.parametrize("antenna", [HalfWaveDipole(), Isotropic(polarisation="mean")])
+def test_the_other_frequencies_lack_weak_paths_alone(antenna: Antenna) -> None:
+    transmitters = {
+        str(hz): Transmitter(SOURCE, frequency_hz=hz, antenna=antenna)
+        for hz in (1.1e9, 2.4e9, 5.2e9, 6.5e9)
+    }
+    both = {"receive_antenna": antenna}
+    maps = compute_radio_maps(ROOM.scene, transmitters, GRID, RANGE, **both)
+    for name, transmitter in transmitters.items():
+        whole = compute_radio_map(ROOM.scene, transmitter, GRID, TraceConfig(2, 1, 20), **both)
+        missing = whole.rss_dbm - maps[name].rss_dbm
+        assert missing.min() > -1e-9
+        assert np.median(missing) < 0.3
+        assert (maps[name].path_count <= whole.path_count).all()

@@ -28,7 +28,7 @@ OFF_WALLS = Grid.over((0.0, 0.0, 12.0, 4.0), 0.7, 1.5).points()
 def test_parts_share_no_receiver(points: np.ndarray, at_least: int) -> None:
     evaluation = evaluation_of(BUILDING.scene.slabs, SOURCE, CONFIG)
     tracing, _ = prepare_within_range(
-        BUILDING.scene, SOURCE.position, points, CONFIG, no_guard(), evaluation
+        BUILDING.scene, SOURCE.position, points, CONFIG, no_guard(), [evaluation]
     )
     targets, cells = tracing.targets, tracing.tree.link[:, CELL]
     parts = beam_parts(tracing, 3)

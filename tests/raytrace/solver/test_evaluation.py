@@ -87,7 +87,7 @@ def test_beams_that_a_loss_limits_serve_their_own_trace_alone(
         evaluation_of(VARIANTS[name][0].slabs, VARIANTS[name][1], config)
         for name in ("as built", variant)
     )
-    tracing, _ = prepare_within_range(ROOM.scene, SOURCE, RECEIVERS, config, no_guard(), own)
+    tracing, _ = prepare_within_range(ROOM.scene, SOURCE, RECEIVERS, config, no_guard(), [own])
     again = evaluation_of(ROOM.scene.slabs, VARIANTS["as built"][1], config)
     for path_class in path_classes(tracing)[:2]:
         path_class.sum_paths(again)
