@@ -132,6 +132,10 @@ class MapRequest:
             )
         except SceneError as error:
             raise SceneError(f"plan {self.plan.name!r}: {error}") from error
+        return self.finished(radio_map)
+
+    def finished(self, radio_map: RadioMap) -> RadioMap:
+        """Return a traced map with its plan in it, without values outside the building."""
         inside = cells_inside(self.plan, self.grid)
         return radio_map.covering(inside).with_plan(floorplans.dumps(self.plan), self.plan.sha256)
 

@@ -11,13 +11,12 @@ from raytrace import (
     Antenna,
     Grid,
     HalfWaveDipole,
-    RadioMap,
     SceneError,
     TraceConfig,
     Transmitter,
     TransmitterMaps,
+    compute_radio_maps,
 )
-from raytrace.trace import part_of
 from rssnav.keeping import save_or_rescue
 from rssnav.maps import (
     CELL_SIZE_M,
@@ -65,6 +64,8 @@ def make_transmitter_maps(
 ) -> TransmitterMaps:
     """Return the radio maps of several transmitters: those in a file if they are current.
 
+    Transmitters at one place share paths, see `raytrace.compute_radio_maps`.
+
     Parameters
     ----------
     plan : FloorPlan
@@ -99,17 +100,23 @@ def make_transmitter_maps(
         if current is not None:
             return current
     prepared = scene or PlanScene.of(plan, edition)
-    maps: dict[str, RadioMap] = {}
-    for number, (name, request) in enumerate(wanted.requests.items()):
-        part = part_of(progress, number, len(transmitters))
-        try:
-            if notice is not None and number == 0:  # once for all
-                made_with = prepared.scene, notice, threads, max_memory_bytes
-                request.announce(*made_with, len(transmitters))
-            maps[name] = request.compute(prepared.scene, threads, part, None, max_memory_bytes)
-        except SceneError as error:
-            raise SceneError(f"transmitter {name!r}: {error}") from error
-    found = TransmitterMaps(maps)
+    first = next(iter(wanted.requests.values()))
+    try:
+        if notice is not None:  # once for all
+            first.announce(prepared.scene, notice, threads, max_memory_bytes, len(transmitters))
+        traced = compute_radio_maps(
+            prepared.scene,
+            transmitters,
+            grid,
+            first.config,
+            receive_antenna=first.receive_antenna,
+            threads=threads,
+            progress=progress,
+            max_memory_bytes=max_memory_bytes,
+        )
+    except SceneError as error:
+        raise SceneError(f"plan {plan.name!r}: {error}") from error
+    found = TransmitterMaps({name: first.finished(one) for name, one in traced.items()})
     if path is not None:
         save_or_rescue(found.save, path)
     return found

@@ -65,8 +65,6 @@ def _where_there_are_paths(layers: Layers, straight_m: Floats) -> Iterator[str]:
     for name in ("strongest_path_dbm", "k_factor_db"):
         if name in layers and np.isneginf(layers[name][reached]).any():
             yield f"dataset {name!r}: expected more than -inf {where}"
-    if "left_out_db" in layers and np.isposinf(layers["left_out_db"][reached]).any():
-        yield f"dataset 'left_out_db': expected less than inf {where}"
     if "mean_delay_s" in layers:
         least_s = straight_m[reached] * (1.0 - _RELATIVE) / SPEED_OF_LIGHT
         if (layers["mean_delay_s"][reached] < least_s).any():

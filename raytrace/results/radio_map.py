@@ -57,7 +57,7 @@ class RadioMap:
         where no path arrives.
     left_out_db
         (n_y, n_x) bound on the power of paths that a limit left out, over the RSS [dB]; -inf where
-        nothing was left out.
+        nothing was left out, inf where it is not known (`compute_radio_maps`).
     receive_antenna
         The receivers' antenna.
     """

@@ -1,5 +1,7 @@
 """Maps of several transmitters: those at one place share beams, and are as if computed alone."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from rooms import ROOMS, SOURCE
@@ -11,6 +13,7 @@ from raytrace import (
     Isotropic,
     TraceConfig,
     Transmitter,
+    TransmitterMaps,
     compute_radio_map,
     compute_radio_maps,
     trace,
@@ -71,8 +74,10 @@ SAME_BUT_FREQUENCY = {
 }
 
 
-def test_a_range_is_that_of_the_lowest_frequency() -> None:
+def test_a_range_is_that_of_the_lowest_frequency(tmp_path: Path) -> None:
     maps = compute_radio_maps(ROOM.scene, SAME_BUT_FREQUENCY, GRID, RANGE)
+    maps.save(tmp_path / "maps.h5")
+    maps = TransmitterMaps.load(tmp_path / "maps.h5")
     assert list(maps) == list(SAME_BUT_FREQUENCY)
     for name in ("2.4 GHz", "elsewhere"):
         alone = compute_radio_map(ROOM.scene, SAME_BUT_FREQUENCY[name], GRID, RANGE)

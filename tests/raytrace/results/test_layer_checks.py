@@ -49,7 +49,6 @@ CONTRADICTIONS = {
     "power without a path": ("path_count", HERE, 0),
     "power without a strongest path": ("strongest_path_dbm", HERE, -np.inf),
     "power without a share of it": ("k_factor_db", HERE, -np.inf),
-    "all was left out, yet power": ("left_out_db", HERE, np.inf),
     "faster than light": ("mean_delay_s", HERE, 1e-9),
     "more than is transmitted": ("rss_dbm", HERE, POWER_DBM + 0.1),
     "a field of more than is transmitted": ("rss_coherent_dbm", HERE, POWER_DBM + 0.1),
