@@ -22,7 +22,7 @@ from raytrace.radio.tables import pairs_of
 from raytrace.results.paths import Paths
 from raytrace.results.step_lanes import with_all_pairs
 from raytrace.solver.limits import check_whole, nbytes, taking
-from raytrace.solver.path_class import Evaluation, KeptRecord, Together, together
+from raytrace.solver.path_class import Evaluation, Evaluations, KeptRecord, grouped
 from raytrace.solver.setup import BEAMS, Tracing
 
 HIT_BATCH = 1 << 17
@@ -77,7 +77,7 @@ class BeamClass(ABC, Generic[Beams]):
         """Find receivers within some of the beams; return how many of the beams were taken."""
 
     @abstractmethod
-    def _evaluate(self, beams: Beams, group: Together, collector: Collector) -> None:
+    def _evaluate(self, beams: Beams, group: Evaluations, collector: Collector) -> None:
         """Evaluate the paths of all hits."""
 
     @abstractmethod
@@ -95,7 +95,7 @@ class BeamClass(ABC, Generic[Beams]):
         """See `Tracing.least`."""
         return self._tracing.least_diffracted
 
-    def _collector(self, group: Together, record: Record, guard: Guard) -> Collector:
+    def _collector(self, group: Evaluations, record: Record, guard: Guard) -> Collector:
         evaluation, shape = group.first, (len(group.numbers),)
         evaluation.check_beams(self._tracing.grown_for)
         geometry, least = self._tracing.geometry, self._least()
@@ -119,7 +119,7 @@ class BeamClass(ABC, Generic[Beams]):
         """See `PathClass`."""
         grown, left_out = self._beams()
         guard = self._guard_beside(grown)
-        groups = together(tuple(evaluations), len(self._tracing.least) > 0)
+        groups = grouped(tuple(evaluations), len(self._tracing.least) > 0)
         collectors = [self._collector(each, no_record(), guard) for each in groups]
         numbers = np.arange(self._n_beams(grown)) if beams is None else beams
         while len(numbers):
@@ -172,7 +172,7 @@ class BeamClass(ABC, Generic[Beams]):
         guard, n_beams = self._guard_beside(grown), self._n_beams(grown)
         beams, done = self._hit(grown, np.arange(n_beams), ALL_HITS, guard)
         check_whole(guard, done == n_beams, HITS)
-        (group,), n_paths, record = together((evaluation,), False), 0, no_record()
+        (group,), n_paths, record = grouped((evaluation,), False), 0, no_record()
         for _ in range(2):
             each = self._path_bytes(beams) if path_bytes is None else path_bytes
             taking(guard, n_paths * (each + 3 * 16 * evaluation.n_pairs), PATHS)

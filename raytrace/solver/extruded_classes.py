@@ -58,7 +58,7 @@ from raytrace.solver.loss_limits import (
     shadow_of,
     strong_arrivals,
 )
-from raytrace.solver.path_class import Evaluation, PathClass, Together
+from raytrace.solver.path_class import Evaluation, Evaluations, PathClass
 from raytrace.solver.setup import BEAMS, Tracing
 
 RECEIVER_BYTES = 240
@@ -119,7 +119,7 @@ class Reflections(BeamClass[ReflectionBeams]):
         hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits, guard)
         return beams._replace(hits=hits), done
 
-    def _evaluate(self, beams: ReflectionBeams, group: Together, collector: Collector) -> None:
+    def _evaluate(self, beams: ReflectionBeams, group: Evaluations, collector: Collector) -> None:
         geometry, leg = self._tracing.geometry, new_leg(beams.tree.link)
         workspace = new_workspace(geometry.max_reflections, len(leg.types), len(group.numbers))
         sum_reflections(geometry, group.every, beams, leg, workspace, collector)
@@ -194,7 +194,7 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
         hits, done = _hits_of_tree(self._tracing, beams.tree, numbers, max_hits, guard)
         return beams._replace(hits=hits), done
 
-    def _evaluate(self, beams: VerticalEdgeBeams, group: Together, collector: Collector) -> None:
+    def _evaluate(self, beams: VerticalEdgeBeams, group: Evaluations, collector: Collector) -> None:
         geometry, tables = self._tracing.geometry, group.first.tables
         leg = new_leg(beams.tree.link)
         bounds = no_bounds()
@@ -324,7 +324,9 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
         hits, seen, done = hit_from_strip(beams.strips, targets, numbers, max_hits, guard)
         return beams._replace(hits=hits, seen=seen), done
 
-    def _evaluate(self, beams: HorizontalEdgeBeams, group: Together, collector: Collector) -> None:
+    def _evaluate(
+        self, beams: HorizontalEdgeBeams, group: Evaluations, collector: Collector
+    ) -> None:
         geometry, n = self._tracing.geometry, len(group.numbers)
         work, shadow = new_edge_workspace(geometry.max_reflections, beams, n), np.empty(0)
         if collector.min_power > 0.0 or len(collector.least):

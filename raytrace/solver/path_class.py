@@ -78,7 +78,7 @@ class Evaluation:
         return shadow_bounds(self.tables)
 
 
-class Together(NamedTuple):
+class Evaluations(NamedTuple):
     """Evaluations of the same paths.
 
     Attributes
@@ -97,7 +97,7 @@ class Together(NamedTuple):
 
 
 @lru_cache(maxsize=2)
-def together(evaluations: tuple[Evaluation, ...], is_limited: bool) -> list[Together]:
+def grouped(evaluations: tuple[Evaluation, ...], is_limited: bool) -> list[Evaluations]:
     """Divide evaluations into those of the same paths; they are kept for the next path class.
 
     Tables must have equal shapes. Where a power limits the paths, each evaluation has its own,
@@ -108,7 +108,7 @@ def together(evaluations: tuple[Evaluation, ...], is_limited: bool) -> list[Toge
         alone = k if each.min_power > 0.0 and not is_limited else -1
         groups.setdefault((alone, each.shapes), []).append(k)
     return [
-        Together(tuple(ks), evaluations[ks[0]], _joined([evaluations[k].tables for k in ks]))
+        Evaluations(tuple(ks), evaluations[ks[0]], _joined([evaluations[k].tables for k in ks]))
         for ks in groups.values()
     ]
 
@@ -167,7 +167,10 @@ class PathClass(Protocol):
         ...
 
     def sum_each(self, evaluations: Sequence[Evaluation]) -> list[Sums]:
-        """Sum the paths with each of several evaluations; the beams are grown once."""
+        """Sum the paths with each of several evaluations; the beams are grown once.
+
+        Where a dynamic range limits the paths, they are those of the first one.
+        """
         ...
 
     def list_paths(self, evaluation: Evaluation, strongest: int | None = None) -> Paths:
