@@ -6,6 +6,7 @@ from raytrace.arrays import Floats
 from raytrace.kernels.beams import IMAGE_X, IMAGE_Y
 from raytrace.kernels.building import Building, TraceGeometry
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.edge_rays import from_frame
 from raytrace.kernels.field import Ray, new_ray, propagate
 from raytrace.kernels.field_tables import FieldTables, phasor
 from raytrace.kernels.horizontal_edge_legs import (
@@ -16,7 +17,6 @@ from raytrace.kernels.horizontal_edge_legs import (
 )
 from raytrace.kernels.lanes import ComplexLanes, Lanes, MatrixLanes, lanes_of, sqrt
 from raytrace.kernels.plan_view import GRAZING_M
-from raytrace.kernels.strips import from_frame
 from raytrace.kernels.unfolding import Leg
 from raytrace.kernels.utd import common_factor, diffracted, wedge_terms
 from raytrace.kernels.validity import validity_weight

@@ -10,9 +10,10 @@ from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, PARENT, Tree
 from raytrace.kernels.blocks import Block
 from raytrace.kernels.building import Building, TraceGeometry
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.edge_rays import from_frame
 from raytrace.kernels.lanes import WIDTH, Lanes, Mask, lanes_of, load, store
 from raytrace.kernels.plan_view import PlanView
-from raytrace.kernels.strips import StripTree, from_frame
+from raytrace.kernels.strips import StripTree
 from raytrace.kernels.unfolding import Leg, new_leg, unfold
 from raytrace.kernels.validity import walls_met
 from raytrace.kernels.wedge import Wedge

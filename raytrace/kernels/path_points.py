@@ -6,6 +6,7 @@ from raytrace.arrays import Floats
 from raytrace.kernels.beams import IMAGE_X, IMAGE_Y, Tree
 from raytrace.kernels.building import Building, TraceGeometry
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.edge_rays import from_frame
 from raytrace.kernels.field import STOREY_TOLERANCE
 from raytrace.kernels.guard import Guard, is_stopped
 from raytrace.kernels.horizontal_edge_legs import (
@@ -27,7 +28,6 @@ from raytrace.kernels.steps import (
     write_ends,
     write_step,
 )
-from raytrace.kernels.strips import from_frame
 from raytrace.kernels.unfolding import (
     DISTANCE,
     NORMAL,

@@ -6,6 +6,7 @@ from raytrace.arrays import Floats, Int32s, Ints
 from raytrace.kernels.beam_hits import HIT_BYTES, Hits, Targets
 from raytrace.kernels.beams import CELL
 from raytrace.kernels.compiling import jit
+from raytrace.kernels.edge_rays import SLIVER_M, in_frame
 from raytrace.kernels.guard import Guard, is_stopped, may_hold
 from raytrace.kernels.lanes import (
     WIDTH,
@@ -20,7 +21,7 @@ from raytrace.kernels.lanes import (
 )
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.rows import enlarged, resized
-from raytrace.kernels.strips import SLIVER_M, StripTree, in_frame
+from raytrace.kernels.strips import StripTree
 
 SEEN_BYTES = 4 * 8
 """Size of a row of `seen` (`hit_from_strip`)."""

@@ -31,13 +31,6 @@ class Spread(NamedTuple):
     n: int
 
 
-@jit(inline=True)
-def nearest_zero(interval: tuple[float, float]) -> float:
-    """Least magnitude within an interval."""
-    low, high = interval
-    return 0.0 if low * high <= 0.0 else min(abs(low), abs(high))
-
-
 @jit(inner=True)
 def may_leave(loss: LossLimit, k: int, left: int, spread: Spread) -> bool:
     """Whether some rays that arrive on way k at a horizontal edge leave it within a beam.

@@ -10,6 +10,7 @@ from raytrace.config import TraceConfig
 from raytrace.geometry import edges
 from raytrace.kernels.beam_hits import Hits, hit_points, no_hits
 from raytrace.kernels.beams import FRACTION, ORDER, Tree, grow_tree, no_tree
+from raytrace.kernels.edge_rays import edge_frame
 from raytrace.kernels.guard import Guard
 from raytrace.kernels.horizontal_edge_legs import (
     HorizontalEdgeArrays,
@@ -29,7 +30,7 @@ from raytrace.kernels.records import Record
 from raytrace.kernels.reflections import ReflectionBeams, sum_reflections
 from raytrace.kernels.steps import Steps
 from raytrace.kernels.strip_hits import hit_from_strip
-from raytrace.kernels.strips import edge_frame, grow_strips, no_strips
+from raytrace.kernels.strips import grow_strips, no_strips
 from raytrace.kernels.sums import Sums, sums_bytes, sums_from
 from raytrace.kernels.unfolding import max_interactions, new_leg
 from raytrace.kernels.vertical_edge_bounds import edge_bounds, no_bounds
