@@ -45,18 +45,15 @@ class EdgeBounds(NamedTuple):
 
     Attributes
     ----------
-    legs
-        (n_legs,) see `vertical_edge_legs.bounds_of_legs`.
     shadow
         See `bounds.wedge_bound`.
     most
         Largest power behind the edge over that of a free path as long.
     columns
         (10, n_legs + 8) properties of the legs, so that eight can be loaded at once: order, length
-        [m], bound, and those of `FaceAngles`.
+        [m], bound (`bounds_of_legs`), and those of `FaceAngles`.
     """
 
-    legs: Floats
     shadow: Floats
     most: float
     columns: Floats
@@ -68,7 +65,7 @@ ORDER_IN, LENGTH_IN, BOUND, ANGLES = range(4)
 
 def no_bounds() -> EdgeBounds:
     """Return bounds that are not read."""
-    return EdgeBounds(np.empty(0), np.empty(0), 0.0, np.empty((0, 0)))
+    return EdgeBounds(np.empty(0), 0.0, np.empty((0, 0)))
 
 
 def edge_bounds(
@@ -79,7 +76,7 @@ def edge_bounds(
     columns = np.ones((ANGLES + 7, len(legs.order) + WIDTH))
     for k, column in enumerate((legs.order, legs.length, bounds, *legs.angles.T)):
         columns[k, : len(legs.order)] = column
-    return EdgeBounds(bounds, shadow, most, columns)
+    return EdgeBounds(shadow, most, columns)
 
 
 @jit()
@@ -145,6 +142,25 @@ def angle_of(rows: Floats, j: int, roots: tuple[Lanes, Lanes]) -> FaceAngles:
 
 
 @jit(inline=True, fast=True)
+def power_behind(
+    tables: FieldTables,
+    wedge: Wedge,
+    directions: tuple[FaceAngles, FaceAngles, FaceAngles],
+    shadow: Floats,
+    lengths: tuple[Lanes, Lanes],
+    rise: Lanes | float,
+) -> Lanes:
+    """`bounds.wedge_bound` of paths that rise at most so far [m].
+
+    `lengths` holds the sum and the product of the lengths before and behind the edge [m, m^2].
+    """
+    total, product = lengths
+    sin_beta = total / sqrt(total * total + rise * rise)
+    sqrt_2kl = sqrt((4.0 * math.pi / tables.wavelength) * product * (1.0 / total))
+    return wedge_bound(tables, wedge, directions, shadow, sqrt_2kl, sin_beta)
+
+
+@jit(inline=True, fast=True)
 def bounds_of_eight(
     geometry: TraceGeometry,
     tables: FieldTables,
@@ -170,15 +186,13 @@ def bounds_of_eight(
     left = float(geometry.max_reflections - order) - load(columns[ORDER_IN, p:])
     total, product = whole.length + length, whole.length * length
     rise = (maximum(left, 0.0) + 1.0) * height
-    sin_beta = total / sqrt(total * total + rise * rise)
-    sqrt_2kl = sqrt((4.0 * math.pi / tables.wavelength) * product * (1.0 / total))
     incident = FaceAngles(
         left, load(columns[ANGLES + 1, p:]), load(columns[ANGLES + 2, p:]),
         load(columns[ANGLES + 3, p:]), load(columns[ANGLES + 4, p:]),
         load(columns[ANGLES + 5, p:]), load(columns[ANGLES + 6, p:]),
     )  # fmt: skip
     directions = whole.low, whole.high, incident
-    behind = wedge_bound(tables, wedge, directions, bounds.shadow, sqrt_2kl, sin_beta)
+    behind = power_behind(tables, wedge, directions, bounds.shadow, (total, product), rise)
     return free_space(tables, total) * load(columns[BOUND, p:]) * whole.kept * behind
 
 
@@ -257,10 +271,7 @@ def pair_bound(
     free = free_space(tables, total) * arriving
     if not any_of(free * WEDGE_POWER >= least * NEGLIGIBLE):
         return free * WEDGE_POWER, several
-    sqrt_2kl = sqrt((4.0 * math.pi / tables.wavelength) * product * (1.0 / total))
-    rise = (left + 1.0) * height
-    sin_beta = total / sqrt(total * total + rise * rise)
-    directions = out.angles, out.angles, angles_of(legs, p)
-    behind = wedge_bound(tables, beams.edge.wedge, directions, shadow, sqrt_2kl, sin_beta)
+    rise, directions = (left + 1.0) * height, (out.angles, out.angles, angles_of(legs, p))
+    behind = power_behind(tables, beams.edge.wedge, directions, shadow, (total, product), rise)
     few = free * WEDGE_POWER < least * NEGLIGIBLE
     return free * where(few, WEDGE_POWER, behind), several

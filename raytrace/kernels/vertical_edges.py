@@ -49,6 +49,7 @@ from raytrace.kernels.validity import (
     walls_met,
 )
 from raytrace.kernels.vertical_edge_bounds import (
+    BOUND,
     BlockBounds,
     EdgeBounds,
     bounds_of_block,
@@ -313,7 +314,7 @@ def sum_vertical_edge(
                 q = int(workspace.ways[way])
                 weight = off_edge * legs.weight[q]
                 if is_bounded:
-                    limit = bounds.shadow, bound_out * bounds.legs[q], weakest
+                    limit = bounds.shadow, bound_out * bounds.columns[BOUND, q], weakest
                     bound, several = pair_bound(geometry, tables, beams, q, out, limit, collector)
                     weight = apply_power_threshold(
                         collector, workspace, least, bound, weight, several
