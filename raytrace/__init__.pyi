@@ -11,6 +11,7 @@ from .errors import (
 )
 from .evaluation import TracedPoints, evaluate_paths, trace_points
 from .grid import Grid
+from .left_out import LeftOutSample, sample_left_out
 from .radio.antenna_array import AntennaArray
 from .radio.antennas import DIPOLE_PEAK_GAIN_DBI, Antenna, HalfWaveDipole, Isotropic
 from .radio.directive import Monopole, Patch, Sector
@@ -52,6 +53,7 @@ __all__ = [
     "Isotropic",
     "Layer",
     "Layered",
+    "LeftOutSample",
     "MapFileError",
     "Material",
     "MemoryLimitError",
@@ -82,6 +84,7 @@ __all__ = [
     "evaluate_paths",
     "find_material",
     "received_power",
+    "sample_left_out",
     "trace_paths",
     "trace_points",
 ]

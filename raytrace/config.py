@@ -77,6 +77,11 @@ class TraceConfig:
         """Whether a power or a loss limits paths, which then depend on the materials too."""
         return max(self.min_power_dbm, -self.dynamic_range_db) > -math.inf
 
+    @property
+    def leaves_out_weak_paths(self) -> bool:
+        """Whether paths are left out because of their power, be it to limit their number."""
+        return self.is_limited or self.max_paths is not None
+
     def _check_integer(self, name: str, least: int, most: int) -> None:
         """Check a whole number, and keep it as int: kernels are compiled for each type."""
         value = getattr(self, name)

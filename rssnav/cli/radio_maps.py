@@ -10,13 +10,22 @@ import typer
 
 import floorplans
 from floorplans import FloorPlan
-from raytrace import RadioMap, Transmitter, TransmitterMaps
-from rssnav.cli.console import note, print_json, print_pairs, say, stage_progress
+from raytrace import RadioMap, Scene, Transmitter, TransmitterMaps, sample_left_out
+from raytrace.left_out import CONFIDENCE, LEAST_DBM, WIDER_DB
+from rssnav.cli.console import (
+    StageProgress,
+    note,
+    print_json,
+    print_pairs,
+    say,
+    stage_progress,
+)
 from rssnav.cli.options import (
     PICTURE_SUFFIXES,
     UNLIMITED,
     AntennaName,
     CellSize,
+    CheckLimits,
     Diffractions,
     DynamicRange,
     Edition,
@@ -45,6 +54,7 @@ from rssnav.cli.radio import Radio, radio_of
 from rssnav.first_use import compile_kernels
 from rssnav.maps import CELL_SIZE_M, HEIGHT_M, cells_inside, make_map
 from rssnav.presets import default_preset
+from rssnav.scenes import scene_of
 from rssnav.transmitter_maps import make_transmitter_maps
 
 
@@ -84,6 +94,7 @@ def map_plan(
     min_power: MinPower = None,
     dynamic_range: DynamicRange = None,
     max_paths: MaxPaths = None,
+    check_limits: CheckLimits = None,
     max_memory: MaxMemory = None,
     edition: Edition = None,
     threads: Threads = None,
@@ -111,6 +122,12 @@ def map_plan(
         "receive_antenna": receive_antenna,
     }  # fmt: skip
     radio = radio_of(plan, loaded, source, options)
+    if check_limits is not None and not radio.config.leaves_out_weak_paths:
+        raise typer.BadParameter(
+            "these limits leave nothing out by its power; give --min-power, --dynamic-range or "
+            "--max-paths, or --preset building.",
+            param_hint="--check-limits",
+        )
     with stage_progress() as show:
         compile_kernels(preset or default_preset(plan), threads=threads)
         maps = _traced(
@@ -126,6 +143,10 @@ def map_plan(
             notice=note,
             force=force,
         )
+        left_out = dict[str, LeftOut]()
+        if check_limits is not None:
+            limits = {"threads": threads, "max_memory_bytes": in_bytes(max_memory)}
+            left_out = _left_out(scene_of(loaded, edition), maps, check_limits, show, limits)
     strongest = maps.best_server_map if len(maps) > 1 else maps.first
     _note_dark_cells(loaded, strongest)
     if picture is not None:
@@ -133,6 +154,7 @@ def map_plan(
     summary = _summary(loaded, maps, strongest) | {
         "file": str(output),
         "picture": None if picture is None else str(picture),
+        "left_out": left_out,
     }
     if as_json:
         print_json({"plan": plan, **summary})
@@ -151,6 +173,37 @@ def _traced(plan: FloorPlan, output: Path, radio: Radio, **options: Any) -> Tran
         return make_transmitter_maps(plan, radio.transmitters, output, **shared)
     ((name, transmitter),) = radio.transmitters.items()
     return TransmitterMaps({name: make_map(plan, output, transmitter=transmitter, **shared)})
+
+
+LeftOut = dict[str, float]
+"""What a sample of cells says of what limits leave out."""
+
+
+def _left_out(
+    scene: Scene,
+    maps: TransmitterMaps,
+    cells: int,
+    show: StageProgress,
+    options: dict[str, Any],
+) -> dict[str, LeftOut]:
+    """Trace random cells of each map again with wider limits; not of those that are all dark."""
+    found: dict[str, LeftOut] = {}
+    for name, radio_map in maps.items():
+        if not (radio_map.rss_dbm > LEAST_DBM).any():
+            note(f"no cell of {name} has more than {LEAST_DBM:g} dBm: its limits are not checked")
+            continue
+        progress = partial(show, f"limits, {name}")
+        sample = sample_left_out(scene, radio_map, cells, progress=progress, **options)
+        found[name] = {
+            "cells": len(sample.points),
+            "wider_db": WIDER_DB,
+            "above_dbm": LEAST_DBM,
+            "median_db": sample.median_db,
+            "largest_db": sample.largest_db,
+            "share_of_all_cells": sample.share(CONFIDENCE),
+            "confidence": CONFIDENCE,
+        }
+    return found
 
 
 def _note_dark_cells(plan: FloorPlan, radio_map: RadioMap) -> None:
@@ -260,6 +313,19 @@ def _print_summary(summary: dict[str, Any]) -> None:
         ("paths", f"{summary['paths']:,}".replace(",", " ")),
         ("tracing", f"{summary['tracing_s']:.1f} s"),
     ]
+    for name, sample in summary["left_out"].items():
+        label = f"left out, {name}" if len(names) > 1 else "left out"
+        pairs += zip((label, ""), _words_of(sample), strict=True)
     if summary["picture"] is not None:
         pairs.append(("picture", summary["picture"]))
     print_pairs(pairs)
+
+
+def _words_of(sample: LeftOut) -> tuple[str, str]:
+    """Two lines on what limits leave out."""
+    return (
+        f"{sample['median_db']:.2f} dB in the median, {sample['largest_db']:.2f} dB at most, in "
+        f"{sample['cells']} random cells above {sample['above_dbm']:g} dBm;",
+        f"no more in {sample['share_of_all_cells']:.0%} of all such cells, with "
+        f"{sample['confidence']:.0%} confidence",
+    )

@@ -153,3 +153,33 @@ def test_dark_cells_behind_walls_say_what_to_do(tmp_path) -> None:
     assert np.isneginf(RadioMap.load(target).rss_dbm).sum() == 12
     lit = run("map", plan, "-o", target, *QUICK)
     assert "no path reaches" not in lit.stderr
+
+
+def test_limits_are_checked_at_random_cells_of_each_map(plan, tmp_path) -> None:
+    target = tmp_path / "maps.h5"
+    arguments = ("map", plan, "-o", target, *QUICK, "--dynamic-range", 5, "--check-limits", 4)
+    facts = json.loads(done(*arguments, "--json"))["left_out"]
+    assert list(facts) == ["west", "east"]
+    for sample in facts.values():
+        assert sample["cells"] == 4
+        assert 0.0 <= sample["median_db"] <= sample["largest_db"]
+        assert sample["share_of_all_cells"] == pytest.approx(0.05**0.25)
+    printed = run(*arguments).stdout
+    assert "left out, west" in printed
+    assert "in 4 random cells above -100 dBm" in printed
+    assert "no more in 47% of all such cells, with 95% confidence" in printed
+
+
+def test_a_check_of_limits_needs_limits_by_power(plan, tmp_path) -> None:
+    arguments = ("map", plan, "-o", tmp_path / "m.h5", "--preset", "paper", *QUICK)
+    result = run(*arguments, "--check-limits", 4)
+    assert result.exit_code == 2
+    assert "--check-limits" in result.stderr
+    assert not (tmp_path / "m.h5").exists()
+
+
+def test_dark_maps_are_not_checked(plan, tmp_path) -> None:
+    arguments = ("map", plan, "-o", tmp_path / "m.h5", *QUICK, "--power", -200, "--min-power", -900)
+    shown = run(*arguments, "--check-limits", 4)
+    assert "left out" not in shown.stdout
+    assert "no cell of west has more than -100 dBm" in shown.stderr
