@@ -5,7 +5,6 @@ import platform
 import time
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
 from typing import Any, NamedTuple
@@ -34,6 +33,7 @@ from raytrace.solver.extruded_classes import Reflected, cells_bytes, path_classe
 from raytrace.solver.limits import taking
 from raytrace.solver.path_class import Evaluation
 from raytrace.solver.setup import Tracing
+from raytrace.solver.sharing import check_frequencies, part_of, sharing_paths
 from raytrace.solver.workers import Stop, Workers
 
 AT_ONCE = 16
@@ -207,7 +207,7 @@ def _maps_at(
         found = _sum_paths(workers, traced, evaluations, run.progress)
     seconds = (time.perf_counter() - started - compilation.seconds) / len(found)
     straight_m = np.linalg.norm(points - np.array(position), axis=1)
-    _warn_of_near_cells(found[0], points)
+    _warn_of_near_cells(found, points)
     maps: list[RadioMap] = []
     for transmitter, sums in zip(transmitters, found, strict=True):
         layers = layers_of(sums, straight_m, transmitter.power_dbm)
@@ -249,20 +249,22 @@ def compute_radio_maps(
     transmitters
         At least one, by name.
     progress
-        Called with finished parts and all parts, `PARTS` of them for each transmitter.
+        Called with finished parts and all parts, `sharing.PARTS` of them for each transmitter.
 
     Raises
     ------
     ValueError
         For no transmitters.
     SceneError
-        Where a transmitter is not inside the building; the message names it.
+        Where a transmitter is not inside the building, or a material is not known at its
+        frequency; the message names it.
     TraceStoppedError, MemoryLimitError
         As for `compute_radio_map`.
     """
     maps: dict[str, RadioMap] = {}
     config = config or TraceConfig()
-    for names in _together(transmitters, config):
+    check_frequencies(scene.slabs, transmitters)
+    for names in sharing_paths(transmitters, config):
         part = part_of(progress, len(maps), len(transmitters), len(names))
         run = _Run(threads, part, stop, max_memory_bytes)
         ends = [transmitters[name] for name in names], receive_antenna
@@ -272,32 +274,6 @@ def compute_radio_maps(
             raise SceneError(f"transmitter {names[0]!r}: {error}") from error
         maps.update(zip(names, found, strict=True))
     return TransmitterMaps({name: maps[name] for name in transmitters})
-
-
-def _together(transmitters: Mapping[str, Transmitter], config: TraceConfig) -> list[list[str]]:
-    """Names of transmitters, those that beams can be grown once for together."""
-    if config.is_limited and math.isinf(config.dynamic_range_db):
-        return [[name] for name in transmitters]
-    groups: dict[object, list[str]] = {}
-    for name, each in transmitters.items():
-        key = replace(each, frequency_hz=1e9) if config.is_limited else each.position
-        groups.setdefault(key, []).append(name)
-    return [sorted(group, key=lambda n: transmitters[n].frequency_hz) for group in groups.values()]
-
-
-PARTS = 1000
-"""Parts that `compute_radio_maps` divides the work for a transmitter into."""
-
-
-def part_of(
-    progress: Progress | None, number: int, count: int, several: int = 1
-) -> Progress | None:
-    """Progress of one or several of equal pieces of work, as progress of all."""
-    if progress is None:
-        return None
-    return lambda done, total: progress(
-        number * PARTS + several * PARTS * done // total, count * PARTS
-    )
 
 
 def received_power(
@@ -369,20 +345,30 @@ def _sum_paths(
     evaluations: Sequence[Evaluation],
     progress: Progress | None,
 ) -> list[Sums]:
-    """Sum all paths at each receiver of a tracing, with each of several evaluations."""
+    """Sum all paths at each receiver of a tracing, with each of several evaluations.
+
+    Where a dynamic range limits the paths, what is left out is bounded at the first frequency.
+    """
     tracing, known = traced
     classes = path_classes(tracing.shared_by(workers.n), known)
     max_paths = tracing.config.max_paths
     found = sum_paths(workers, classes, evaluations, max_paths=max_paths, progress=progress)
-    for k, sums in enumerate(found):
-        is_bounded = k == 0 or not len(tracing.least)
-        sums.left_out[tracing.reachable] += sums.not_grown[0] if is_bounded else math.inf
+    for sums in found:
+        sums.left_out[tracing.reachable] += sums.not_grown[0]
+    if len(tracing.least):
+        first = evaluations[0].tables.wavelength
+        for each, sums in zip(evaluations[1:], found[1:], strict=True):
+            if each.tables.wavelength == first:
+                sums.left_out[:] = found[0].left_out
+            else:
+                sums.left_out[tracing.reachable] = math.inf
     return found
 
 
-def _warn_of_near_cells(sums: Sums, points: Floats) -> None:
-    """Warn of cells in which the far field of the paths would exceed what is transmitted."""
-    near = np.flatnonzero(np.maximum(sums.power, coherent_power(sums)) > 1.0)
+def _warn_of_near_cells(found: Sequence[Sums], points: Floats) -> None:
+    """Warn of cells in which the far field of some paths would exceed what is transmitted."""
+    power = [np.maximum(sums.power, coherent_power(sums)) for sums in found]
+    near = np.flatnonzero(np.max(power, axis=0) > 1.0)
     if len(near):
         x, y, z = points[near[0]]
         warnings.warn(

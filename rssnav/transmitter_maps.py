@@ -100,10 +100,13 @@ def make_transmitter_maps(
         if current is not None:
             return current
     prepared = scene or PlanScene.of(plan, edition)
-    first = next(iter(wanted.requests.values()))
+    name, first = next(iter(wanted.requests.items()))
     try:
         if notice is not None:  # once for all
             first.announce(prepared.scene, notice, threads, max_memory_bytes, len(transmitters))
+    except SceneError as error:
+        raise SceneError(f"plan {plan.name!r}: transmitter {name!r}: {error}") from error
+    try:
         traced = compute_radio_maps(
             prepared.scene,
             transmitters,

@@ -1,5 +1,6 @@
 """Maps of several transmitters: those at one place share beams, and are as if computed alone."""
 
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ from raytrace import (
     Grid,
     HalfWaveDipole,
     Isotropic,
+    SceneError,
+    SceneWarning,
     TraceConfig,
     Transmitter,
     TransmitterMaps,
@@ -18,6 +21,7 @@ from raytrace import (
     compute_radio_maps,
     trace,
 )
+from raytrace.radio.antennas import Amplitudes
 from raytrace.results.layers import LAYERS
 
 ROOM = ROOMS["glass window and door"]
@@ -93,11 +97,70 @@ def test_the_other_frequencies_lack_weak_paths_alone(antenna: Antenna) -> None:
         str(hz): Transmitter(SOURCE, frequency_hz=hz, antenna=antenna)
         for hz in (1.1e9, 2.4e9, 5.2e9, 6.5e9)
     }
-    both = {"receive_antenna": antenna}
-    maps = compute_radio_maps(ROOM.scene, transmitters, GRID, RANGE, **both)
+    maps = compute_radio_maps(ROOM.scene, transmitters, GRID, RANGE, receive_antenna=antenna)
     for name, transmitter in transmitters.items():
-        whole = compute_radio_map(ROOM.scene, transmitter, GRID, TraceConfig(2, 1, 20), **both)
+        whole = compute_radio_map(
+            ROOM.scene, transmitter, GRID, TraceConfig(2, 1, 20), receive_antenna=antenna
+        )
         missing = whole.rss_dbm - maps[name].rss_dbm
         assert missing.min() > -1e-9
         assert np.median(missing) < 0.3
         assert (maps[name].path_count <= whole.path_count).all()
+
+
+@dataclass  # neither frozen nor with a hash
+class OwnAntenna:
+    """An antenna of a user, all around and vertically polarised."""
+
+    amplitude: float = 1.0
+
+    def amplitudes(self, sine: np.ndarray, azimuth: np.ndarray) -> Amplitudes:
+        """See `Antenna`."""
+        return Amplitudes(np.full(np.shape(sine), self.amplitude), np.zeros(np.shape(sine)))
+
+    def describe(self) -> str:
+        """See `Antenna`."""
+        return "of a user"
+
+
+def test_antennas_need_no_hash() -> None:
+    transmitters = {
+        name: replace(transmitter, antenna=OwnAntenna())
+        for name, transmitter in SAME_BUT_FREQUENCY.items()
+    }
+    maps = compute_radio_maps(ROOM.scene, transmitters, GRID, RANGE)
+    np.testing.assert_array_equal(maps["5 GHz"].path_count, maps["2.4 GHz"].path_count)
+    alone = compute_radio_map(ROOM.scene, transmitters["2.4 GHz"], GRID, RANGE)
+    np.testing.assert_array_equal(maps["2.4 GHz"].rss_dbm, alone.rss_dbm)
+
+
+def test_equal_transmitters_have_equal_maps() -> None:
+    transmitters = {**SAME_BUT_FREQUENCY, "2.4 GHz again": Transmitter(SOURCE)}
+    maps = compute_radio_maps(ROOM.scene, transmitters, GRID, RANGE)
+    for layer in LAYERS:
+        one, other = (getattr(maps[name], layer) for name in ("2.4 GHz", "2.4 GHz again"))
+        np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize("config", [RANGE, TraceConfig(1, 0, 1), TraceConfig(1, 0, 1, -90.0)])
+@pytest.mark.parametrize("frequency_hz", [1e8, 1e12])
+def test_an_unknown_material_is_told_of_its_transmitter(
+    config: TraceConfig, frequency_hz: float
+) -> None:
+    wrong = {"wrong": Transmitter(SOURCE, frequency_hz=frequency_hz)}
+    with pytest.raises(SceneError, match=r"transmitter 'wrong': .* GHz: defined only for"):
+        compute_radio_maps(ROOM.scene, {**SAME_BUT_FREQUENCY, **wrong}, GRID, config)
+
+
+@pytest.mark.parametrize("names", [("none upwards", "all around"), ("all around", "none upwards")])
+def test_power_that_is_bounded_is_told_for_every_transmitter(names: tuple[str, ...]) -> None:
+    antennas = {"none upwards": HalfWaveDipole(), "all around": Isotropic()}
+    transmitters = {name: Transmitter(SOURCE, antenna=antennas[name]) for name in names}
+    above = Grid(np.array([X]), np.array([Y]), Z + 0.005, 1.0)
+    line_of_sight = TraceConfig(0, 0, 0)
+    with pytest.warns(SceneWarning, match="1 of 1 cells are too near to the transmitter"):
+        maps = compute_radio_maps(
+            ROOM.scene, transmitters, above, line_of_sight, receive_antenna=Isotropic()
+        )
+    assert maps["all around"].rss_dbm.item() == transmitters["all around"].power_dbm
+    assert maps["none upwards"].rss_dbm.item() < -100.0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import floorplans
-from raytrace import CostEstimate, Grid, TraceConfig, Transmitter, estimate_cost
+from raytrace import CostEstimate, Grid, SceneError, TraceConfig, Transmitter, estimate_cost
 from rssnav import cost_notice
 from rssnav.maps import make_map
 from rssnav.scenes import scene_of
@@ -105,6 +105,15 @@ def test_several_transmitters_are_announced_once_for_all(monkeypatch: pytest.Mon
     make_transmitter_maps(plan, sending, config=TraceConfig(0, 0), notice=heard.append)
     (words,) = heard
     assert words.startswith("estimate: 3 000 paths to 108 cells from 3 transmitters, about 2 min")
+
+
+def test_what_cannot_be_estimated_is_told_of_its_transmitter(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(cost_notice, "MAX_SILENT_WORK", 0.0)
+    plan, outside = floorplans.load("flat"), {"a": Transmitter((-5.0, 4.7, 2.4))}
+    with pytest.raises(SceneError, match=r"plan 'flat': transmitter 'a': .* is not inside"):
+        make_transmitter_maps(plan, outside, config=TraceConfig(0, 0), notice=lambda _: None)
 
 
 def test_a_survey_is_estimated_like_a_grid_in_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
