@@ -1,0 +1,60 @@
+"""Several transmitters: which of them share paths, and how far the work for all of them is."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from raytrace.config import TraceConfig
+from raytrace.errors import SceneError
+from raytrace.radio.materials import Slab
+from raytrace.radio.transmitter import Transmitter
+from raytrace.results.antenna_file import as_stored
+from raytrace.solver.accumulate import Progress
+
+PARTS = 1000
+"""Parts that the work for a transmitter is divided into."""
+
+
+def sharing_paths(transmitters: Mapping[str, Transmitter], config: TraceConfig) -> list[list[str]]:
+    """Divide transmitters into those that beams can be grown once for; return their names.
+
+    The first of each has the lowest frequency. Antennas are the same if a file would hold the same,
+    so that one of a user's own class needs neither equality nor a hash.
+    """
+    if config.is_limited and math.isinf(config.dynamic_range_db):
+        return [[name] for name in transmitters]
+    groups: dict[object, list[str]] = {}
+    for name, each in transmitters.items():
+        key: object = each.position
+        if config.is_limited:
+            key = replace(each, frequency_hz=1e9, antenna=as_stored(each.antenna))
+        groups.setdefault(key, []).append(name)
+    return [sorted(group, key=lambda n: transmitters[n].frequency_hz) for group in groups.values()]
+
+
+def check_frequencies(slabs: Sequence[Slab], transmitters: Mapping[str, Transmitter]) -> None:
+    """Check that all materials are known at all frequencies, before the first is traced.
+
+    Raises
+    ------
+    SceneError
+        Where one is not; the message names the transmitter.
+    """
+    for name, transmitter in transmitters.items():
+        try:
+            for slab in slabs:
+                frequency_hz = transmitter.frequency_hz
+                slab.material.coefficients(slab.thickness_m, frequency_hz, np.ones(1))
+        except SceneError as error:
+            raise SceneError(f"transmitter {name!r}: {error}") from error
+
+
+def part_of(progress: Progress | None, number: int, count: int, several: int) -> Progress | None:
+    """Progress of one or several of equal pieces of work, as progress of all."""
+    if progress is None:
+        return None
+    return lambda done, total: progress(
+        number * PARTS + several * PARTS * done // total, count * PARTS
+    )
