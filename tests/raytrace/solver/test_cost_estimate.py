@@ -16,6 +16,8 @@ from raytrace import (
     compute_radio_map,
     estimate_cost,
 )
+from raytrace.kernels.sums import Sums
+from raytrace.solver import cost_estimate
 
 MAPS = [
     ("flat", 6, 1, 1.0),
@@ -87,3 +89,19 @@ def test_an_estimate_keeps_to_its_memory() -> None:
     assert estimate_cost(scene, source, grid, config, max_memory_bytes=300_000).is_extrapolated
     with pytest.raises(MemoryLimitError):
         estimate_cost(scene, source, grid, config, max_memory_bytes=1)
+
+
+def test_compiling_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, source, bounds = scene_of("flat")
+    grid, config, add_sums = Grid.over(bounds, 1.0, 1.5), TraceConfig(2, 1), cost_estimate.add_sums
+    known = estimate_cost(scene, source, grid, config).seconds
+    calls = list[None]()
+
+    def slow_at_first(*sums: Sums) -> None:
+        if not calls:
+            time.sleep(1.0)
+        calls.append(None)
+        add_sums(*sums)
+
+    monkeypatch.setattr(cost_estimate, "add_sums", slow_at_first)
+    assert estimate_cost(scene, source, grid, config).seconds < known + 0.5
