@@ -97,15 +97,15 @@ class Evaluations(NamedTuple):
 
 
 @lru_cache(maxsize=2)
-def grouped(evaluations: tuple[Evaluation, ...], is_limited: bool) -> list[Evaluations]:
-    """Divide evaluations into those of the same paths; they are kept for the next path class.
+def grouped(evaluations: tuple[Evaluation, ...], by_first: bool) -> list[Evaluations]:
+    """Divide evaluations into those of the same paths, whose tables have equal shapes.
 
-    Tables must have equal shapes. Where a power limits the paths, each evaluation has its own,
-    unless `is_limited` says that they are limited by the first one.
+    Where a power limits the paths, each evaluation has its own, unless `by_first` says that they
+    are limited by the first one. The result is kept, as all classes of a trace ask for the same.
     """
     groups: dict[object, list[int]] = {}
     for k, each in enumerate(evaluations):
-        alone = k if each.min_power > 0.0 and not is_limited else -1
+        alone = k if each.min_power > 0.0 and not by_first else -1
         groups.setdefault((alone, each.shapes), []).append(k)
     return [
         Evaluations(tuple(ks), evaluations[ks[0]], _joined([evaluations[k].tables for k in ks]))

@@ -2,15 +2,14 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from raytrace.config import TraceConfig
 from raytrace.errors import SceneError
+from raytrace.radio.antennas import Antenna
 from raytrace.radio.materials import Slab
 from raytrace.radio.transmitter import Transmitter
-from raytrace.results.antenna_file import as_stored
 from raytrace.solver.accumulate import Progress
 
 PARTS = 1000
@@ -20,8 +19,7 @@ PARTS = 1000
 def sharing_paths(transmitters: Mapping[str, Transmitter], config: TraceConfig) -> list[list[str]]:
     """Divide transmitters into those that beams can be grown once for; return their names.
 
-    The first of each has the lowest frequency. Antennas are the same if a file would hold the same,
-    so that one of a user's own class needs neither equality nor a hash.
+    The first of each has the lowest frequency.
     """
     if config.is_limited and math.isinf(config.dynamic_range_db):
         return [[name] for name in transmitters]
@@ -29,9 +27,18 @@ def sharing_paths(transmitters: Mapping[str, Transmitter], config: TraceConfig) 
     for name, each in transmitters.items():
         key: object = each.position
         if config.is_limited:
-            key = replace(each, frequency_hz=1e9, antenna=as_stored(each.antenna))
+            key = each.position, each.power_dbm, _identity(each.antenna)
         groups.setdefault(key, []).append(name)
     return [sorted(group, key=lambda n: transmitters[n].frequency_hz) for group in groups.values()]
+
+
+def _identity(antenna: Antenna) -> object:
+    """Return what is equal for the same antenna; one of a user's own class may have no hash."""
+    try:
+        hash(antenna)
+    except TypeError:
+        return id(antenna)
+    return antenna
 
 
 def check_frequencies(slabs: Sequence[Slab], transmitters: Mapping[str, Transmitter]) -> None:

@@ -12,6 +12,7 @@ from raytrace import (
     Grid,
     HalfWaveDipole,
     Isotropic,
+    PatternTable,
     SceneError,
     SceneWarning,
     TraceConfig,
@@ -124,14 +125,20 @@ class OwnAntenna:
 
 
 def test_antennas_need_no_hash() -> None:
+    antenna = OwnAntenna()
     transmitters = {
-        name: replace(transmitter, antenna=OwnAntenna())
+        name: replace(transmitter, antenna=antenna)
         for name, transmitter in SAME_BUT_FREQUENCY.items()
     }
+    transmitters["as a table"] = Transmitter(
+        SOURCE, frequency_hz=6e9, antenna=PatternTable.of(antenna)
+    )
     maps = compute_radio_maps(ROOM.scene, transmitters, GRID, RANGE)
-    np.testing.assert_array_equal(maps["5 GHz"].path_count, maps["2.4 GHz"].path_count)
-    alone = compute_radio_map(ROOM.scene, transmitters["2.4 GHz"], GRID, RANGE)
-    np.testing.assert_array_equal(maps["2.4 GHz"].rss_dbm, alone.rss_dbm)
+    assert np.isposinf(maps["5 GHz"].left_out_db).all()
+    for name in ("2.4 GHz", "elsewhere", "as a table"):
+        alone = compute_radio_map(ROOM.scene, transmitters[name], GRID, RANGE)
+        np.testing.assert_array_equal(maps[name].rss_dbm, alone.rss_dbm)
+        np.testing.assert_array_equal(maps[name].left_out_db, alone.left_out_db)
 
 
 def test_equal_transmitters_have_equal_maps() -> None:
