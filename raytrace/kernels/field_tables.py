@@ -78,16 +78,16 @@ class FieldTables(NamedTuple):
 
 
 class FrequencyTables(NamedTuple):
-    """Field tables that the same paths are evaluated with, such as those of n frequencies.
+    """Field tables that the same paths are evaluated with, such as those of several frequencies.
 
     Attributes
     ----------
     first
         The first ones. The power of paths is compared with thresholds by these.
     wavelength
-        (n,) [m]
+        (n,) of the n others [m].
     reflection, transmission, transmit, receive, patterns
-        Those of all n, along one more axis, the first.
+        Those of the others, along one more axis, the first.
     """
 
     first: FieldTables
@@ -101,7 +101,7 @@ class FrequencyTables(NamedTuple):
 
 @jit(inline=True)
 def tables_at(every: FrequencyTables, f: int) -> FieldTables:
-    """Tables number f, as far as fields depend on them; the bounds are those of the first."""
+    """Tables of other f, as far as fields depend on them; its bounds are those of the first."""
     first = every.first
     return FieldTables(
         every.wavelength[f], first.slab_rows, every.reflection[f], every.transmission[f],

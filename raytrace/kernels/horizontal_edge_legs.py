@@ -125,13 +125,13 @@ class EdgeWorkspace(NamedTuple):
 
 
 def new_edge_workspace(
-    max_reflections: int, beams: HorizontalEdgeBeams, n_tables: int = 1
+    max_reflections: int, beams: HorizontalEdgeBeams, n_others: int = 0
 ) -> EdgeWorkspace:
     """Working arrays for the paths over an edge."""
     strips = beams.strips
     leg_in, leg_out = new_leg(beams.tree.link[beams.images.beam]), new_leg(strips.link)
     return EdgeWorkspace(
-        new_workspace(max_reflections, max(len(leg_in.types), len(leg_out.types)), n_tables),
+        new_workspace(max_reflections, max(len(leg_in.types), len(leg_out.types)), n_others),
         leg_in,
         leg_out,
         np.empty((len(strips.link), 2, WIDTH)),

@@ -54,12 +54,18 @@ from raytrace.kernels.losses import NEGLIGIBLE
 from raytrace.kernels.plan_view import GRAZING_M
 from raytrace.kernels.records import Record, record_paths
 from raytrace.kernels.strips import FRACTION, StripTree
-from raytrace.kernels.sums import add_path
+from raytrace.kernels.sums import (
+    Bundle,
+    empty_bundle,
+    loaded_bundle,
+    store_bundle,
+    with_path,
+)
 from raytrace.kernels.validity import OFFSET_M, one_sided_weight, validity_weight
 from raytrace.kernels.workspace import (
     Collector,
     Workspace,
-    add_bundles,
+    add_bundle,
     add_left_out,
     apply_power_threshold,
     count_path,
@@ -151,6 +157,7 @@ def weight_inside(u: Lanes, low: Lanes, high: Lanes) -> Lanes:
 
 @jit(inner=True, fast=True)
 def add_edge_paths(
+    bundle: Bundle,
     geometry: TraceGeometry,
     every: FrequencyTables,
     trees: tuple[Tree, StripTree],
@@ -158,12 +165,12 @@ def add_edge_paths(
     here: tuple[Block, Lanes],
     work: EdgeWorkspace,
     record: Record,
-) -> None:
+) -> Bundle:
     """Add paths over an edge; one-sided evaluations of those that graze another edge.
 
     `here` holds the receivers, and the weights of the paths.
     """
-    block, weight_here = here
+    (block, weight_here), tables = here, every.first
     legs = legs_over_edge(geometry.building.plan, path, trees, block, work)
     grazing, excess = weight_here >= 0.0, path.before + path.after - block.straight
     for side in range(len(OFFSETS_OF_LEGS_M)):
@@ -172,18 +179,25 @@ def add_edge_paths(
         weight = weight_here * validity_weight(n_transmissions, geometry.max_transmissions)
         weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.25)
         if any_of(weight > 0.0):
+            gain = edge_gain(
+                geometry, tables, path, legs, trees[0].beam, offsets, n_transmissions, work
+            )
             count_path(work.workspace, path.order, weight)
+            bundle = with_path(bundle, gain, excess, weight, legs.arriving)
             for f in range(len(every.wavelength)):
-                tables, images = tables_at(every, f), trees[0].beam
-                gain = edge_gain(
-                    geometry, tables, path, legs, images, offsets, n_transmissions, work
+                other, rows = tables_at(every, f), work.workspace.bundles[f]
+                of_other = edge_gain(
+                    geometry, other, path, legs, trees[0].beam, offsets, n_transmissions, work
                 )
-                add_path(work.workspace.bundles[f], gain, excess, weight, legs.arriving)
-                if record.used[0] >= 0:
-                    at, numbers = (block.first, block.n), (path.image_in, path.image_out, side)
-                    record_paths(record, at, path.leg, numbers, gain, weight)
+                others = loaded_bundle(other, rows)
+                others = with_path(others, of_other, excess, weight, legs.arriving)
+                store_bundle(rows, others)
+            if record.used[0] >= 0:
+                at, numbers = (block.first, block.n), (path.image_in, path.image_out, side)
+                record_paths(record, at, path.leg, numbers, gain, weight)
         if not any_of(grazing):
             break
+    return bundle
 
 
 @jit(inner=True, fast=True)
@@ -307,6 +321,7 @@ def arriving_strongly(
 
 @jit(inline=True, fast=True)
 def add_images(
+    bundle: Bundle,
     geometry: TraceGeometry,
     every: FrequencyTables,
     beams: HorizontalEdgeBeams,
@@ -314,7 +329,7 @@ def add_images(
     shadow: Floats,
     work: EdgeWorkspace,
     collector: Collector,
-) -> None:
+) -> Bundle:
     """Add the paths from one image of the transmitter, one for every pair of image heights."""
     (block, seen, way), edge, workspace = here, beams.edge, work.workspace
     tables = every.first
@@ -346,9 +361,10 @@ def add_images(
                 weight = apply_power_threshold(collector, workspace, way.least, bound, weight, one)
             if any_of(weight > 0.0):
                 trees = beams.tree, beams.strips
-                add_edge_paths(
-                    geometry, every, trees, path, (block, weight), work, collector.record
+                bundle = add_edge_paths(
+                    bundle, geometry, every, trees, path, (block, weight), work, collector.record
                 )
+    return bundle
 
 
 @jit(fast=True, allocates=False)
@@ -389,7 +405,7 @@ def sum_horizontal_edge(
         bins, over = distance_bins(seen.h), lanes_of(math.inf)
         out = geometry.max_reflections - int(beams.strips.link[block.beam, ORDER])
         kept = beams.strips.frame[block.beam, FRACTION]
-        p = int(np.int64(0))
+        bundle, p = empty_bundle(tables), int(np.int64(0))
         while p < len(images.order):
             left = out - int(images.order[p])
             if left < 0 or is_stopped(collector.guard):
@@ -413,8 +429,8 @@ def sum_horizontal_edge(
                 way = arriving_strongly(tables, images, seen, way, limit, workspace, collector)
             if any_of(way.weight > 0.0):
                 here = block, seen, way
-                add_images(geometry, every, beams, here, shadow, work, collector)
+                bundle = add_images(bundle, geometry, every, beams, here, shadow, work, collector)
             p += 1
-        add_bundles(collector.sums, workspace, block.n)
+        add_bundle(collector, workspace, block.n, bundle)
         if is_bounded:
             add_left_out(collector.sums, workspace, block.n)

@@ -5,28 +5,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from raytrace.arrays import Floats
 from raytrace.kernels.beam_hits import Hits
 from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.blocks import next_block
 from raytrace.kernels.bounds import all_heights, free_space, image_bound, leg_bound
-from raytrace.kernels.building import Building, TraceGeometry
+from raytrace.kernels.building import TraceGeometry
 from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
-from raytrace.kernels.field_tables import FieldTables, FrequencyTables, phasor, tables_at
+from raytrace.kernels.field_tables import FrequencyTables, phasor, tables_at
 from raytrace.kernels.guard import is_stopped
-from raytrace.kernels.lanes import (
-    ComplexLanes,
-    Lanes,
-    MatrixLanes,
-    all_false,
-    any_of,
-    lanes_of,
-    load,
-    minimum,
-)
+from raytrace.kernels.lanes import Lanes, all_false, any_of, lanes_of, load, minimum
 from raytrace.kernels.records import record_paths
-from raytrace.kernels.sums import add_path
+from raytrace.kernels.sums import empty_bundle, loaded_bundle, store_bundle, with_path
 from raytrace.kernels.unfolding import Leg, unfold
 from raytrace.kernels.validity import (
     ONE_SIDED_OFFSETS_M,
@@ -39,7 +29,7 @@ from raytrace.kernels.waves import launch, receive
 from raytrace.kernels.workspace import (
     Collector,
     Workspace,
-    add_bundles,
+    add_bundle,
     add_left_out,
     apply_power_threshold,
     count_path,
@@ -64,6 +54,8 @@ class Legs(NamedTuple):
         The legs, their interactions, and horizontal lengths [m].
     departure, arriving
         Horizontal directions in which they leave, and from which they come.
+    straight
+        Distances from the transmitter to the receivers [m].
     """
 
     leg: Leg
@@ -71,26 +63,36 @@ class Legs(NamedTuple):
     length: Lanes
     departure: tuple[Lanes, Lanes]
     arriving: tuple[Lanes, Lanes]
+    straight: Lanes
 
 
-@jit(inline=True, fast=True)
-def gain_along(
-    building: Building,
-    tables: FieldTables,
+@jit(inner=True, fast=True)
+def add_to_others(
+    geometry: TraceGeometry,
+    every: FrequencyTables,
     legs: Legs,
-    slope: Lanes,
-    bounces: int,
-    heights: tuple[Lanes, float],
-    seen: Floats,
-) -> tuple[ComplexLanes | MatrixLanes, Lanes]:
-    """Gains of paths, and their lengths [m]; for `heights` and `seen` see `field.propagate`."""
-    ray = new_ray(building, tables, slope, bounces)
-    wave = launch(tables, legs.departure, ray.sin_elevation)
-    wave = propagate(building, tables, legs.leg, legs.n, legs.length, ray, heights, seen, wave)
-    distance = legs.length * ray.sec_elevation
-    phase = phasor(tables.cis, distance * (1.0 / tables.wavelength))
-    spreading = (tables.wavelength / (4.0 * math.pi)) / distance
-    return receive(tables, wave, legs.arriving) * (phase * spreading), distance
+    image: tuple[Lanes, int, float],
+    weight: Lanes,
+    workspace: Workspace,
+) -> None:
+    """Add paths with all tables but the first to `workspace.bundles`.
+
+    `image` holds slopes, reflections at floor and ceiling, and the offset of heights.
+    """
+    (slope, bounces, offset), building = image, geometry.building
+    heights, seen = (lanes_of(geometry.transmitter[2]), offset), workspace.coefficients
+    for f in range(len(every.wavelength)):
+        tables, rows = tables_at(every, f), workspace.bundles[f]
+        ray = new_ray(building, tables, slope, bounces)
+        wave = launch(tables, legs.departure, ray.sin_elevation)
+        wave = propagate(building, tables, legs.leg, legs.n, legs.length, ray, heights, seen, wave)
+        distance = legs.length * ray.sec_elevation
+        phase = phasor(tables.cis, distance * (1.0 / tables.wavelength))
+        spreading = (tables.wavelength / (4.0 * math.pi)) / distance
+        gain = receive(tables, wave, legs.arriving) * (phase * spreading)
+        bundle = loaded_bundle(tables, rows)
+        bundle = with_path(bundle, gain, distance - legs.straight, weight, legs.arriving)
+        store_bundle(rows, bundle)
 
 
 @jit(fast=True, allocates=False)
@@ -116,6 +118,7 @@ def sum_reflections(
         Added to.
     """
     (tree, hits), building, tables = beams, geometry.building, every.first
+    wavelength = tables.wavelength
     z_transmitter = geometry.transmitter[2]
     z_root = lanes_of(z_transmitter)
     zero = first = int(np.int64(0))  # a literal would be compiled as a type of its own
@@ -142,6 +145,7 @@ def sum_reflections(
             weight_here = apply_power_threshold(
                 collector, workspace, least, bound, weight_here, several
             )
+        bundle = empty_bundle(tables)
         k, side, grazing = zero, zero, all_false()
         while k < n_images:
             slope = (load(workspace.image_z[k]) - z_transmitter) * inv_length
@@ -155,19 +159,24 @@ def sum_reflections(
                     collector, workspace, least, of_image, weight, (1.0, lanes_of(1.0))
                 )
             if any_of(weight > 0.0):
-                legs, bounces = Legs(leg, n, length, (ux, uy), arriving), geometry.image_bounces[k]
-                count_path(workspace, order + bounces, weight)
-                for f in range(len(every.wavelength)):
-                    heights, seen = (z_root, offset), workspace.coefficients
-                    gain, distance = gain_along(
-                        building, tables_at(every, f), legs, slope, bounces, heights, seen
-                    )
-                    excess = distance - block.straight
-                    add_path(workspace.bundles[f], gain, excess, weight, arriving)
-                    if collector.record.used[0] >= 0:
-                        at = (block.first, block.n)
-                        record_paths(collector.record, at, -1, (-1, k, side), gain, weight)
+                ray = new_ray(building, tables, slope, geometry.image_bounces[k])
+                wave = launch(tables, (ux, uy), ray.sin_elevation)
+                heights, seen = (z_root, offset), workspace.coefficients
+                wave = propagate(building, tables, leg, n, length, ray, heights, seen, wave)
+                distance = length * ray.sec_elevation
+                phase = phasor(tables.cis, distance * (1.0 / wavelength))
+                spreading = (wavelength / (4.0 * math.pi)) / distance
+                gain = receive(tables, wave, arriving) * (phase * spreading)
+                count_path(workspace, order + ray.bounces, weight)
+                bundle = with_path(bundle, gain, distance - block.straight, weight, arriving)
+                if len(every.wavelength) > 0:
+                    legs = Legs(leg, n, length, (ux, uy), arriving, block.straight)
+                    image = slope, geometry.image_bounces[k], offset
+                    add_to_others(geometry, every, legs, image, weight, workspace)
+                if collector.record.used[0] >= 0:
+                    at = (block.first, block.n)
+                    record_paths(collector.record, at, -1, (-1, k, side), gain, weight)
             k, side = next_evaluation(k, side, grazing)
-        add_bundles(collector.sums, workspace, block.n)
+        add_bundle(collector, workspace, block.n, bundle)
         if is_bounded:
             add_left_out(collector.sums, workspace, block.n)

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from raytrace.arrays import Bools, Complexes, Floats
-from raytrace.kernels.compiling import jit
+from raytrace.kernels.compiling import chosen_by_type, jit
+from raytrace.kernels.field_tables import FieldTables
 from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
@@ -15,8 +16,10 @@ from raytrace.kernels.lanes import (
     imag_of,
     lanes_of,
     load,
+    matrix_of,
     maximum,
     real_of,
+    row_of,
     squared_size,
     store,
     where_complex,
@@ -90,12 +93,16 @@ def new_sums(
     )
 
 
-def sums_at(sums: Sums, f: int) -> Sums:
+def sums_of(sums: Sums, f: int) -> Sums:
     """Sums number f along the first axis of all arrays."""
     return Sums(
         sums.field[f], sums.power[f], sums.n_paths[f], sums.moments[f], sums.left_out[f],
         sums.not_grown[f], sums.touched[f], sums.bins[f],
     )  # fmt: skip
+
+
+sums_at = jit(inline=True)(sums_of)
+"""`sums_of` for kernels."""
 
 
 def sums_bytes(n_receivers: int, max_reflections: int, n_pairs: int = 1) -> int:
@@ -138,33 +145,101 @@ def sums_from(sums: Sums, first: int) -> Sums:
     )  # fmt: skip
 
 
+class Bundle(NamedTuple):
+    """Sums over the paths that arrive at eight receivers; see `Sums`."""
+
+    field: ComplexLanes | MatrixLanes
+    power: Lanes
+    excess: Lanes
+    excess_squared: Lanes
+    cosine: Lanes
+    sine: Lanes
+    strongest: Lanes
+
+
 BUNDLE_ROWS = 1 + N_MOMENTS + 2 * PAIRS
-"""Rows of what arrives at eight receivers: power, moments, real and imaginary parts of fields."""
+"""Rows of a `Bundle` in memory: its power and moments, real and imaginary parts of its fields."""
 
 FIELDS = 1 + N_MOMENTS
 """First row of the fields."""
 
 
-@jit(inline=True, fast=True)
-def increase(row: Floats, by: Lanes) -> None:
-    """Add to a row of eight numbers."""
-    store(row, load(row) + by)
+@jit(inline=True)
+def store_bundle(rows: Floats, bundle: Bundle) -> None:
+    """Write a bundle to rows (BUNDLE_ROWS, 8)."""
+    for k, part in enumerate(bundle[1:]):
+        store(rows[k], part)
+    for k, gain in enumerate(elements_of(bundle.field)):
+        store(rows[FIELDS + 2 * k], real_of(gain))
+        store(rows[FIELDS + 2 * k + 1], imag_of(gain))
+
+
+@jit(inline=True)
+def element(rows: Floats, k: int) -> ComplexLanes:
+    """Read a field of a bundle."""
+    return complex_of(load(rows[FIELDS + 2 * k]), load(rows[FIELDS + 2 * k + 1]))
+
+
+def _empty(tables: FieldTables) -> Bundle:
+    none = lanes_of(0.0)
+    return Bundle(complex_of(none, none), none, none, none, none, none, none)
+
+
+def _empty_matrices(tables: FieldTables) -> Bundle:
+    none = lanes_of(0.0)
+    zero = complex_of(none, none)
+    row = row_of(zero, zero)
+    return Bundle(matrix_of(row, row), none, none, none, none, none, none)
+
+
+def empty_bundle(tables: FieldTables) -> Bundle:
+    """Sums over no paths, of gains as `waves.receive` returns them."""
+    return _empty(tables) if tables.unknown is None else _empty_matrices(tables)
+
+
+chosen_by_type("unknown", _empty, _empty_matrices)(empty_bundle)
+
+
+def _loaded(tables: FieldTables, rows: Floats) -> Bundle:
+    return Bundle(
+        element(rows, 0), load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]),
+        load(rows[4]), load(rows[5]),
+    )  # fmt: skip
+
+
+def _loaded_matrices(tables: FieldTables, rows: Floats) -> Bundle:
+    one, other = (
+        row_of(element(rows, 0), element(rows, 1)),
+        row_of(element(rows, 2), element(rows, 3)),
+    )
+    return Bundle(
+        matrix_of(one, other), load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]),
+        load(rows[4]), load(rows[5]),
+    )  # fmt: skip
+
+
+def loaded_bundle(tables: FieldTables, rows: Floats) -> Bundle:
+    """Read a bundle, of gains as `waves.receive` returns them, from rows (BUNDLE_ROWS, 8)."""
+    return _loaded(tables, rows) if tables.unknown is None else _loaded_matrices(tables, rows)
+
+
+chosen_by_type("unknown", _loaded, _loaded_matrices)(loaded_bundle)
 
 
 @jit(inline=True, fast=True)
-def add_path(
-    rows: Floats,
+def with_path(
+    bundle: Bundle,
     gain: ComplexLanes | MatrixLanes,
     excess: Lanes,
     weight: Lanes,
     direction: tuple[Lanes, Lanes],
-) -> None:
-    """Add one more path to each receiver.
+) -> Bundle:
+    """Sums with one more path to each receiver.
 
     Parameters
     ----------
-    rows
-        (BUNDLE_ROWS, 8) added to.
+    bundle
+        The sums.
     gain, excess, weight
         Of the paths: gains, lengths beyond the straight line [m], weights.
     direction
@@ -174,12 +249,12 @@ def add_path(
     size = squared_size(counted)
     power = size * weight
     power_excess = power * excess
-    increase(rows[0], power)
-    increase(rows[1 + EXCESS], power_excess)
-    increase(rows[1 + EXCESS_SQUARED], power_excess * excess)
-    increase(rows[1 + COSINE], power * direction[0])
-    increase(rows[1 + SINE], power * direction[1])
-    store(rows[1 + STRONGEST], maximum(load(rows[1 + STRONGEST]), size))
-    for k, field in enumerate(elements_of(counted * weight)):
-        increase(rows[FIELDS + 2 * k], real_of(field))
-        increase(rows[FIELDS + 2 * k + 1], imag_of(field))
+    return Bundle(
+        bundle.field + counted * weight,
+        bundle.power + power,
+        bundle.excess + power_excess,
+        bundle.excess_squared + power_excess * excess,
+        bundle.cosine + power * direction[0],
+        bundle.sine + power * direction[1],
+        maximum(bundle.strongest, size),
+    )

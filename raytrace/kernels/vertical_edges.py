@@ -37,7 +37,13 @@ from raytrace.kernels.lanes import (
 )
 from raytrace.kernels.plan_view import GRAZING_M, in_building
 from raytrace.kernels.records import record_paths
-from raytrace.kernels.sums import add_path
+from raytrace.kernels.sums import (
+    Bundle,
+    empty_bundle,
+    loaded_bundle,
+    store_bundle,
+    with_path,
+)
 from raytrace.kernels.unfolding import Leg, has_height_limits, unfold
 from raytrace.kernels.utd import WedgeTerms, common_factor, diffracted, wedge_terms
 from raytrace.kernels.validity import (
@@ -68,7 +74,7 @@ from raytrace.kernels.waves import Wave, launch, receive
 from raytrace.kernels.workspace import (
     Collector,
     Workspace,
-    add_bundles,
+    add_bundle,
     add_left_out,
     apply_power_threshold,
     count_path,
@@ -98,8 +104,8 @@ class Pair(NamedTuple):
         Horizontal direction in which the paths leave the transmitter.
     limits_in
         Whether heights matter to the leg to the edge, see `unfolding.has_height_limits`.
-    product
-        Of their lengths [m^2].
+    spreading, sqrt_2kl
+        Spreading factor, and sqrt(2 k L) of the UTD, for horizontal paths.
     """
 
     edge: VerticalEdgeArrays
@@ -113,7 +119,8 @@ class Pair(NamedTuple):
     terms: WedgeTerms
     departure: tuple[Lanes, Lanes]
     limits_in: bool
-    product: Lanes
+    spreading: Lanes
+    sqrt_2kl: Lanes
 
 
 @jit(inline=True, fast=True)
@@ -135,17 +142,22 @@ def legs_from_edge(
 
 
 @jit(inline=True, fast=True)
-def pair_of(edge: VerticalEdgeArrays, legs: LegsIn, p: int, out: LegsOut) -> Pair:
+def pair_of(
+    tables: FieldTables, edge: VerticalEdgeArrays, legs: LegsIn, p: int, out: LegsOut
+) -> Pair:
     """Join leg p to the edge to legs from it."""
+    wavelength = tables.wavelength
     total = out.length + legs.length[p]
     product = out.length * legs.length[p]
+    spreading = (wavelength / (4.0 * math.pi)) / sqrt(product * total)
+    sqrt_2kl = sqrt((4.0 * math.pi / wavelength) * product * (1.0 / total))
     grazing = (0.5 * GRAZING_M) * out.inv_length
     terms = wedge_terms(edge.wedge, out.angles, angles_of(legs, p), grazing)
     departure = lanes_of(legs.departure[p, 0]), lanes_of(legs.departure[p, 1])
     return Pair(
         edge, p, out.order + legs.order[p], Leg(legs.interactions[p], legs.types[p]),
         legs.n_interactions[p], legs.length[p], out, total, terms, departure,
-        legs.has_height_limits[p], product,
+        legs.has_height_limits[p], spreading, sqrt_2kl,
     )  # fmt: skip
 
 
@@ -190,9 +202,7 @@ def pair_gain(
     1 / (sqrt(s s' (s + s')) sin beta) is sqrt(cos_el) over the root of the horizontal parts
     (docs/theory.md, eqs. 16-20). `seen` is scratch, see `field.propagate`.
     """
-    building, out, wavelength = geometry.building, pair.out, tables.wavelength
-    spreading = (wavelength / (4.0 * math.pi)) / sqrt(pair.product * pair.total)
-    sqrt_2kl = sqrt((4.0 * math.pi / wavelength) * pair.product * (1.0 / pair.total))
+    building, out = geometry.building, pair.out
     z_root = lanes_of(geometry.transmitter[2])
     ray = new_ray(building, tables, slope, bounces)
     root = sqrt(ray.cos_elevation)
@@ -203,7 +213,7 @@ def pair_gain(
         tables,
         pair.edge.wedge,
         pair.terms,
-        sqrt_2kl * root,
+        pair.sqrt_2kl * root,
         (ray.cos_elevation, wave.sin_elevation),
         (wave.v, wave.h),
         validity_weight(n_transmissions, geometry.max_transmissions - 1),
@@ -212,13 +222,54 @@ def pair_gain(
     heights = z_root + slope * pair.length_in, offset
     wave = propagate(building, tables, out.leg, out.n, out.length, ray, heights, seen, wave)
     distance = pair.total * ray.sec_elevation
-    phase = phasor(tables.cis, distance * (1.0 / wavelength))
+    phase = phasor(tables.cis, distance * (1.0 / tables.wavelength))
     amplitude = receive(tables, wave, out.arriving)
-    return amplitude * (phase * (spreading * root)), distance
+    return amplitude * (phase * (pair.spreading * root)), distance
+
+
+@jit(inline=True, fast=True)
+def pair_at(pair: Pair, wavelength: float) -> Pair:
+    """Return the same legs at another wavelength."""
+    product = pair.out.length * pair.length_in
+    spreading = (wavelength / (4.0 * math.pi)) / sqrt(product * pair.total)
+    sqrt_2kl = sqrt((4.0 * math.pi / wavelength) * product * (1.0 / pair.total))
+    return Pair(
+        pair.edge, pair.number, pair.order, pair.leg_in, pair.n_in, pair.length_in, pair.out,
+        pair.total, pair.terms, pair.departure, pair.limits_in, spreading, sqrt_2kl,
+    )  # fmt: skip
+
+
+@jit(inner=True, fast=True)
+def add_to_others(
+    geometry: TraceGeometry,
+    every: FrequencyTables,
+    pair: Pair,
+    image: tuple[Lanes, int, float],
+    n_transmissions: Lanes,
+    weight: Lanes,
+    workspace: Workspace,
+    straight: Lanes,
+) -> None:
+    """Add paths with all tables but the first to `workspace.bundles`.
+
+    `image` holds slopes, reflections at floor and ceiling, and the offset of heights.
+    """
+    slope, bounces, offset = image
+    for f in range(len(every.wavelength)):
+        tables, rows = tables_at(every, f), workspace.bundles[f]
+        gain, distance = pair_gain(
+            geometry, tables, pair_at(pair, tables.wavelength), slope, bounces, offset,
+            n_transmissions, workspace.coefficients,
+        )  # fmt: skip
+        gain = gain * common_factor(pair.edge.wedge.n, tables.wavelength)
+        bundle = loaded_bundle(tables, rows)
+        bundle = with_path(bundle, gain, distance - straight, weight, pair.out.arriving)
+        store_bundle(rows, bundle)
 
 
 @jit(inline=True, fast=True)
 def add_pair(
+    bundle: Bundle,
     geometry: TraceGeometry,
     every: FrequencyTables,
     block: Block,
@@ -226,15 +277,15 @@ def add_pair(
     here: tuple[Lanes, Lanes, Lanes],
     workspace: Workspace,
     collector: Collector,
-) -> None:
+) -> Bundle:
     """Add the paths of a pair of legs, one for every image height.
 
     `here` holds the weights of the receivers, a bound on the power of horizontal paths, and the
     thresholds of `workspace.least_powers`.
     """
-    weight_here, bound, least = here
+    (weight_here, bound, least), tables = here, every.first
     n_images = 2 * (geometry.max_reflections - pair.order) + 1
-    inv_total = 1.0 / pair.total
+    common, inv_total = common_factor(pair.edge.wedge.n, tables.wavelength), 1.0 / pair.total
     k = side = int(np.int64(0))  # a literal would be compiled as a type of its own
     grazing = all_false()
     while k < n_images:
@@ -244,23 +295,28 @@ def add_pair(
         weight = weight_here * validity_weight(n_transmissions, geometry.max_transmissions)
         weight, grazing = one_sided_weight(side, weight, grazing, grazes, 0.5)
         if has_threshold(collector):
-            of_image = bound * image_bound(geometry.building, every.first, slope, bounces)
+            of_image = bound * image_bound(geometry.building, tables, slope, bounces)
             one = 1.0, lanes_of(1.0)
             weight = apply_power_threshold(collector, workspace, least, of_image, weight, one)
         if any_of(weight > 0.0):
+            seen = workspace.coefficients
+            gain, distance = pair_gain(
+                geometry, tables, pair, slope, bounces, offset, n_transmissions, seen
+            )
+            gain = gain * common
             count_path(workspace, pair.order + bounces, weight)
-            for f in range(len(every.wavelength)):
-                tables, seen = tables_at(every, f), workspace.coefficients
-                gain, distance = pair_gain(
-                    geometry, tables, pair, slope, bounces, offset, n_transmissions, seen
+            excess = distance - block.straight
+            bundle = with_path(bundle, gain, excess, weight, pair.out.arriving)
+            if len(every.wavelength) > 0:
+                image, straight = (slope, bounces, offset), block.straight
+                add_to_others(
+                    geometry, every, pair, image, n_transmissions, weight, workspace, straight
                 )
-                gain = gain * common_factor(pair.edge.wedge.n, tables.wavelength)
-                excess = distance - block.straight
-                add_path(workspace.bundles[f], gain, excess, weight, pair.out.arriving)
-                if collector.record.used[0] >= 0:
-                    at, images = (block.first, block.n), (-1, k, side)
-                    record_paths(collector.record, at, pair.number, images, gain, weight)
+            if collector.record.used[0] >= 0:
+                at, images = (block.first, block.n), (-1, k, side)
+                record_paths(collector.record, at, pair.number, images, gain, weight)
         k, side = next_evaluation(k, side, grazing)
+    return bundle
 
 
 @jit(fast=True, allocates=False)
@@ -305,7 +361,7 @@ def sum_vertical_edge(
         whole = BlockBounds(out.angles, out.angles, out.length, bound_out, weakest)
         if is_bounded:
             whole = bounds_of_block(whole, workspace.rows)
-        p = int(np.int64(0))
+        bundle, p = empty_bundle(tables), int(np.int64(0))
         while p < len(legs.order) and not is_stopped(collector.guard):
             n_legs, p = next_legs(
                 geometry, tables, beams, bounds, p, (block, whole), workspace, collector
@@ -320,8 +376,10 @@ def sum_vertical_edge(
                         collector, workspace, least, bound, weight, several
                     )
                 if any_of(weight > 0.0):
-                    pair, here = pair_of(edge, legs, q, out), (weight, bound, least)
-                    add_pair(geometry, every, block, pair, here, workspace, collector)
-        add_bundles(collector.sums, workspace, block.n)
+                    pair, here = pair_of(tables, edge, legs, q, out), (weight, bound, least)
+                    bundle = add_pair(
+                        bundle, geometry, every, block, pair, here, workspace, collector
+                    )
+        add_bundle(collector, workspace, block.n, bundle)
         if is_bounded:
             add_left_out(collector.sums, workspace, block.n)

@@ -19,7 +19,16 @@ from raytrace.kernels.lanes import (
     where,
 )
 from raytrace.kernels.records import Record
-from raytrace.kernels.sums import BUNDLE_ROWS, EXCESS, FIELDS, STRONGEST, Sums
+from raytrace.kernels.sums import (
+    BUNDLE_ROWS,
+    EXCESS,
+    FIELDS,
+    STRONGEST,
+    Bundle,
+    Sums,
+    store_bundle,
+    sums_at,
+)
 
 
 class Collector(NamedTuple):
@@ -27,9 +36,9 @@ class Collector(NamedTuple):
 
     Attributes
     ----------
-    sums, record
-        Sums over paths with each of several tables, along an axis in front of the others; and
-        single paths.
+    sums, others, record
+        Sums over paths with the first tables; with the others, along an axis in front of that of
+        the receivers; and single paths.
     min_power
         Paths whose power is known to be below this are left out [fraction of the transmitted].
     least
@@ -42,6 +51,7 @@ class Collector(NamedTuple):
     """
 
     sums: Sums
+    others: Sums
     record: Record
     min_power: float
     least: Floats
@@ -66,7 +76,7 @@ class Workspace(NamedTuple):
     left
         (8,) bound on the power of paths to them that are left out.
     bundles
-        (n_tables, BUNDLE_ROWS, 8) what arrives there, with each of several tables.
+        (n_others, BUNDLE_ROWS, 8) what arrives there with the other tables, see `sums.Bundle`.
     rows, coefficients
         (BUNDLE_ROWS, 8) and (n_interactions, 4, 8) scratch.
     """
@@ -82,7 +92,7 @@ class Workspace(NamedTuple):
     coefficients: Floats
 
 
-def new_workspace(max_reflections: int, n_interactions: int, n_tables: int = 1) -> Workspace:
+def new_workspace(max_reflections: int, n_interactions: int, n_others: int = 0) -> Workspace:
     """Working arrays for paths of that many reflections, whose legs meet no more walls."""
     return Workspace(
         np.zeros(WIDTH, np.int64),
@@ -91,7 +101,7 @@ def new_workspace(max_reflections: int, n_interactions: int, n_tables: int = 1) 
         np.zeros(WIDTH, np.int64),
         np.empty((max_reflections + 1, WIDTH)),
         np.zeros(WIDTH),
-        np.zeros((n_tables, BUNDLE_ROWS, WIDTH)),
+        np.zeros((n_others, BUNDLE_ROWS, WIDTH)),
         np.empty((BUNDLE_ROWS, WIDTH)),
         np.empty((n_interactions, 4, WIDTH)),
     )
@@ -103,29 +113,38 @@ def count_path(workspace: Workspace, order: int, weight: Lanes) -> None:
     store(workspace.counts[order], load(workspace.counts[order]) + weight)
 
 
-@jit(inner=True)
-def add_bundles(sums: Sums, workspace: Workspace, n: int) -> None:
-    """Add what arrives at the first n receivers of a block to the sums, and begin anew."""
+@jit(inline=True)
+def add_bundle(collector: Collector, workspace: Workspace, n: int, bundle: Bundle) -> None:
+    """Add what arrives at the first n receivers of a block to the sums."""
     total = lanes_of(0.0)
     for k in range(len(workspace.counts)):
         total = total + load(workspace.counts[k])
     if not any_of(total > 0.0):
         return
+    store_bundle(workspace.rows, bundle)
+    add_rows(collector.sums, workspace, n, workspace.rows)
     for f in range(len(workspace.bundles)):
-        rows, fields = workspace.bundles[f], workspace.bundles[f, FIELDS:]
-        for j in range(n):
-            r = workspace.receivers[j]
-            for k in range(sums.field.shape[2]):
-                sums.field[f, r, k] += complex(fields[2 * k, j], fields[2 * k + 1, j])
-            sums.power[f, r] += rows[0, j]
-            moments = sums.moments[f, r]
-            for k in range(EXCESS, STRONGEST):
-                moments[k] += rows[1 + k, j]
-            moments[STRONGEST] = max(moments[STRONGEST], rows[1 + STRONGEST, j])
-            for k in range(len(workspace.counts)):
-                sums.n_paths[f, r, k] += workspace.counts[k, j]
+        rows = workspace.bundles[f]
+        add_rows(sums_at(collector.others, f), workspace, n, rows)
         for k in range(len(rows)):
             store(rows[k], lanes_of(0.0))
+
+
+@jit(inline=True)
+def add_rows(sums: Sums, workspace: Workspace, n: int, rows: Floats) -> None:
+    """Add a bundle in memory to the sums."""
+    fields = rows[FIELDS:]
+    for j in range(n):
+        r = workspace.receivers[j]
+        for k in range(sums.field.shape[1]):
+            sums.field[r, k] += complex(fields[2 * k, j], fields[2 * k + 1, j])
+        sums.power[r] += rows[0, j]
+        moments = sums.moments[r]
+        for k in range(EXCESS, STRONGEST):
+            moments[k] += rows[1 + k, j]
+        moments[STRONGEST] = max(moments[STRONGEST], rows[1 + STRONGEST, j])
+        for k in range(len(workspace.counts)):
+            sums.n_paths[r, k] += workspace.counts[k, j]
 
 
 @jit(inline=True)
@@ -190,11 +209,11 @@ def count_left_out(sums: Sums, bound: Lanes, left: Lanes) -> None:
         power, n_paths = lane(bound, j), lane(left, j)
         if n_paths > 0.0:
             level = int(-10.0 * math.log10(max(power, 1e-39)))
-            sums.bins[0, max(level, 0)] += n_paths
+            sums.bins[max(level, 0)] += n_paths
 
 
 @jit(inner=True)
 def add_left_out(sums: Sums, workspace: Workspace, n: int) -> None:
     """Add what is left out at the first n receivers of a block to the sums."""
     for j in range(n):
-        sums.left_out[0, workspace.receivers[j]] += workspace.left[j]
+        sums.left_out[workspace.receivers[j]] += workspace.left[j]

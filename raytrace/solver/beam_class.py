@@ -15,7 +15,7 @@ from raytrace.kernels.horizontal_edge_legs import HorizontalEdgeBeams
 from raytrace.kernels.records import Record, new_record, no_record
 from raytrace.kernels.reflections import ReflectionBeams
 from raytrace.kernels.steps import PATH_BYTES, STEP_BYTES, Steps, new_steps
-from raytrace.kernels.sums import Sums, new_sums, sums_at
+from raytrace.kernels.sums import Sums, new_sums, sums_of
 from raytrace.kernels.vertical_edge_legs import VerticalEdgeBeams
 from raytrace.kernels.workspace import Collector
 from raytrace.radio.tables import pairs_of
@@ -96,15 +96,16 @@ class BeamClass(ABC, Generic[Beams]):
         return self._tracing.least_diffracted
 
     def _collector(self, group: Evaluations, record: Record, guard: Guard) -> Collector:
-        evaluation, shape = group.first, (len(group.numbers),)
+        evaluation, n_others = group.first, len(group.numbers) - 1
         evaluation.check_beams(self._tracing.grown_for)
         geometry, least = self._tracing.geometry, self._least()
         heights = np.zeros((0, 0))
         if len(least) or evaluation.min_power > 0.0:
             heights = self._heights.of(evaluation.tables)
         n_receivers = len(geometry.receivers.xy)
-        sums = new_sums(n_receivers, geometry.max_reflections, evaluation.n_pairs, shape)
-        return Collector(sums, record, evaluation.min_power, least, heights, guard)
+        size = n_receivers, geometry.max_reflections, evaluation.n_pairs
+        sums, others = new_sums(*size), new_sums(*size, (n_others,))
+        return Collector(sums, others, record, evaluation.min_power, least, heights, guard)
 
     def grow(self) -> int:
         """See `PathClass`."""
@@ -126,14 +127,17 @@ class BeamClass(ABC, Generic[Beams]):
             batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
             check_whole(guard, done > 0, HITS)
             for group, collector in zip(groups, collectors, strict=True):
-                collector.sums.touched[:, batch.hits.pair[:, 0]] = True
+                collector.sums.touched[batch.hits.pair[:, 0]] = True
                 self._evaluate(batch, group, collector)
             numbers = numbers[done:]
         check_whole(guard, True, HITS)
         found: dict[int, Sums] = {}
         for group, collector in zip(groups, collectors, strict=True):
-            collector.sums.not_grown[:] = left_out
-            found.update((k, sums_at(collector.sums, f)) for f, k in enumerate(group.numbers))
+            collector.sums.not_grown[0] = left_out
+            collector.others.not_grown[:] = left_out
+            collector.others.touched[:] = collector.sums.touched
+            others = (sums_of(collector.others, f) for f in range(len(group.numbers) - 1))
+            found.update(zip(group.numbers, (collector.sums, *others), strict=True))
         return [found[k] for k in range(len(evaluations))]
 
     def list_paths(self, evaluation: Evaluation, strongest: int | None = None) -> Paths:

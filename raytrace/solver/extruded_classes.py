@@ -122,7 +122,7 @@ class Reflections(BeamClass[ReflectionBeams]):
 
     def _evaluate(self, beams: ReflectionBeams, group: Evaluations, collector: Collector) -> None:
         geometry, leg = self._tracing.geometry, new_leg(beams.tree.link)
-        workspace = new_workspace(geometry.max_reflections, len(leg.types), len(group.numbers))
+        workspace = new_workspace(geometry.max_reflections, len(leg.types), len(group.numbers) - 1)
         sum_reflections(geometry, group.every, beams, leg, workspace, collector)
 
     def _write_points(
@@ -203,7 +203,7 @@ class OverVerticalEdge(BeamClass[VerticalEdgeBeams]):
             shadow = shadow_of(self._tracing.limits, group.first, self._edge.wedge.o_slab)
             bounds = edge_bounds(geometry, tables, beams.legs, shadow, self._power_behind)
         most = max(len(leg.types), beams.legs.types.shape[1])
-        workspace = new_workspace(geometry.max_reflections, most, len(group.numbers))
+        workspace = new_workspace(geometry.max_reflections, most, len(group.numbers) - 1)
         sum_vertical_edge(geometry, group.every, beams, bounds, leg, workspace, collector)
 
     def _write_points(
@@ -328,8 +328,8 @@ class OverHorizontalEdge(BeamClass[HorizontalEdgeBeams]):
     def _evaluate(
         self, beams: HorizontalEdgeBeams, group: Evaluations, collector: Collector
     ) -> None:
-        geometry, n = self._tracing.geometry, len(group.numbers)
-        work, shadow = new_edge_workspace(geometry.max_reflections, beams, n), np.empty(0)
+        geometry, n_others = self._tracing.geometry, len(group.numbers) - 1
+        work, shadow = new_edge_workspace(geometry.max_reflections, beams, n_others), np.empty(0)
         if collector.min_power > 0.0 or len(collector.least):
             shadow = shadow_of(self._tracing.limits, group.first, self._edge.wedge.o_slab)
         sum_horizontal_edge(geometry, group.every, beams, shadow, work, collector)

@@ -108,23 +108,26 @@ def grouped(evaluations: tuple[Evaluation, ...], by_first: bool) -> list[Evaluat
         alone = k if each.min_power > 0.0 and not by_first else -1
         groups.setdefault((alone, each.shapes), []).append(k)
     return [
-        Evaluations(tuple(ks), evaluations[ks[0]], _joined([evaluations[k].tables for k in ks]))
+        Evaluations(tuple(ks), evaluations[ks[0]], _joined(*(evaluations[k].tables for k in ks)))
         for ks in groups.values()
     ]
 
 
-def _joined(tables: list[FieldTables]) -> FrequencyTables:
-    def all_of(arrays: list[Floats]) -> Floats:
-        return arrays[0][None] if len(arrays) == 1 else np.stack(arrays)
+def _joined(first: FieldTables, *others: FieldTables) -> FrequencyTables:
+    def joined(like: Floats, arrays: list[Floats]) -> Floats:
+        return np.stack(arrays) if arrays else np.empty((0, *like.shape))
 
     return FrequencyTables(
-        tables[0],
-        np.array([one.wavelength for one in tables]),
-        all_of([one.reflection for one in tables]),
-        all_of([one.transmission for one in tables]),
-        all_of([one.transmit for one in tables]),
-        all_of([one.receive for one in tables]),
-        (all_of([one.patterns[0] for one in tables]), all_of([one.patterns[1] for one in tables])),
+        first,
+        np.array([one.wavelength for one in others]),
+        joined(first.reflection, [one.reflection for one in others]),
+        joined(first.transmission, [one.transmission for one in others]),
+        joined(first.transmit, [one.transmit for one in others]),
+        joined(first.receive, [one.receive for one in others]),
+        (
+            joined(first.patterns[0], [one.patterns[0] for one in others]),
+            joined(first.patterns[1], [one.patterns[1] for one in others]),
+        ),
     )
 
 
