@@ -4,7 +4,7 @@ They depend on materials, antennas and the frequency alone, not on the geometry 
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from raytrace.arrays import Floats
 from raytrace.kernels.compiling import jit
@@ -77,20 +77,17 @@ class FieldTables(NamedTuple):
     unknown: Unknown | None = None
 
 
-class FrequencyTables(NamedTuple):
-    """Field tables that the same paths are evaluated with, such as those of several frequencies.
+class OtherTables(NamedTuple):
+    """Those of n other `FieldTables` that fields depend on, along one more axis, the first.
 
     Attributes
     ----------
-    first
-        The first ones. The power of paths is compared with thresholds by these.
     wavelength
-        (n,) of the n others [m].
+        (n,) [m]
     reflection, transmission, transmit, receive, patterns
-        Those of the others, along one more axis, the first.
+        See `FieldTables`.
     """
 
-    first: FieldTables
     wavelength: Floats
     reflection: Floats
     transmission: Floats
@@ -99,16 +96,36 @@ class FrequencyTables(NamedTuple):
     patterns: tuple[Floats, Floats]
 
 
+class FrequencyTables(NamedTuple):
+    """Field tables that the same paths are evaluated with, such as those of several frequencies.
+
+    Attributes
+    ----------
+    first
+        The first ones. The power of paths is compared with thresholds by these.
+    others
+        The others; None where there are none. Kernels are compiled for each of the two.
+    """
+
+    first: FieldTables
+    others: OtherTables | None = None
+
+
 @jit(inline=True)
 def tables_at(every: FrequencyTables, f: int) -> FieldTables:
     """Tables of other f, as far as fields depend on them; its bounds are those of the first."""
     first = every.first
+    others: Any = every.others
     return FieldTables(
-        every.wavelength[f], first.slab_rows, every.reflection[f], every.transmission[f],
-        first.max_reflectance, first.peak_gain, first.transition, first.cis, every.transmit[f],
-        every.receive[f], (every.patterns[0][f], every.patterns[1][f]), first.azimuths,
+        others.wavelength[f], first.slab_rows, others.reflection[f], others.transmission[f],
+        first.max_reflectance, first.peak_gain, first.transition, first.cis, others.transmit[f],
+        others.receive[f], (others.patterns[0][f], others.patterns[1][f]), first.azimuths,
         first.unknown,
     )  # fmt: skip
+
+
+def no_others(every: FrequencyTables, paths: Any) -> None:
+    """Add nothing to sums with other tables, where there are none."""
 
 
 @jit(inline=True)

@@ -16,8 +16,8 @@ from raytrace.kernels.bounds import (
     wedge_bound,
 )
 from raytrace.kernels.building import TraceGeometry
-from raytrace.kernels.compiling import jit
-from raytrace.kernels.field_tables import FieldTables, FrequencyTables, tables_at
+from raytrace.kernels.compiling import chosen_by_type, jit
+from raytrace.kernels.field_tables import FieldTables, FrequencyTables, no_others, tables_at
 from raytrace.kernels.guard import is_stopped
 from raytrace.kernels.horizontal_edge_bounds import distance_bins
 from raytrace.kernels.horizontal_edge_field import (
@@ -27,6 +27,7 @@ from raytrace.kernels.horizontal_edge_field import (
     hypot,
 )
 from raytrace.kernels.horizontal_edge_legs import (
+    EdgeLegs,
     EdgePath,
     EdgeWorkspace,
     HorizontalEdgeArrays,
@@ -155,6 +156,34 @@ def weight_inside(u: Lanes, low: Lanes, high: Lanes) -> Lanes:
     return where(inside >= GRAZING_M, 1.0, half)
 
 
+OtherPaths = tuple[
+    TraceGeometry, EdgePath, EdgeLegs, tuple[Floats, tuple[float, float], Lanes, Lanes, Lanes],
+    EdgeWorkspace,
+]  # fmt: skip
+"""Geometry; paths; legs; images of the transmitter in its beams, height offsets, numbers of
+transmissions, lengths beyond the straight line [m] and weights; what is added to."""
+
+
+@jit(inline=True, fast=True)
+def add_to_each(every: FrequencyTables, paths: OtherPaths) -> None:
+    """Add paths with each of the other tables to `Workspace.bundles`."""
+    geometry, path, legs, of_paths, work = paths
+    images, offsets, n_transmissions, excess, weight = of_paths
+    for f in range(len(work.workspace.bundles)):
+        tables, rows = tables_at(every, f), work.workspace.bundles[f]
+        gain = edge_gain(geometry, tables, path, legs, images, offsets, n_transmissions, work)
+        bundle = with_path(loaded_bundle(tables, rows), gain, excess, weight, legs.arriving)
+        store_bundle(rows, bundle)
+
+
+def add_to_others(every: FrequencyTables, paths: OtherPaths) -> None:
+    """Add paths with the other tables, if there are any."""
+    add_to_each(every, paths)
+
+
+chosen_by_type("others", no_others, add_to_others)(add_to_others)
+
+
 @jit(inner=True, fast=True)
 def add_edge_paths(
     bundle: Bundle,
@@ -184,14 +213,8 @@ def add_edge_paths(
             )
             count_path(work.workspace, path.order, weight)
             bundle = with_path(bundle, gain, excess, weight, legs.arriving)
-            for f in range(len(every.wavelength)):
-                other, rows = tables_at(every, f), work.workspace.bundles[f]
-                of_other = edge_gain(
-                    geometry, other, path, legs, trees[0].beam, offsets, n_transmissions, work
-                )
-                others = loaded_bundle(other, rows)
-                others = with_path(others, of_other, excess, weight, legs.arriving)
-                store_bundle(rows, others)
+            of_paths = trees[0].beam, offsets, n_transmissions, excess, weight
+            add_to_others(every, (geometry, path, legs, of_paths, work))
             if record.used[0] >= 0:
                 at, numbers = (block.first, block.n), (path.image_in, path.image_out, side)
                 record_paths(record, at, path.leg, numbers, gain, weight)

@@ -10,9 +10,9 @@ from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.blocks import next_block
 from raytrace.kernels.bounds import all_heights, free_space, image_bound, leg_bound
 from raytrace.kernels.building import TraceGeometry
-from raytrace.kernels.compiling import jit
+from raytrace.kernels.compiling import chosen_by_type, jit
 from raytrace.kernels.field import new_ray, propagate
-from raytrace.kernels.field_tables import FrequencyTables, phasor, tables_at
+from raytrace.kernels.field_tables import FrequencyTables, no_others, phasor, tables_at
 from raytrace.kernels.guard import is_stopped
 from raytrace.kernels.lanes import Lanes, all_false, any_of, lanes_of, load, minimum
 from raytrace.kernels.records import record_paths
@@ -66,22 +66,18 @@ class Legs(NamedTuple):
     straight: Lanes
 
 
-@jit(inner=True, fast=True)
-def add_to_others(
-    geometry: TraceGeometry,
-    every: FrequencyTables,
-    legs: Legs,
-    image: tuple[Lanes, int, float],
-    weight: Lanes,
-    workspace: Workspace,
-) -> None:
-    """Add paths with all tables but the first to `workspace.bundles`.
+OtherPaths = tuple[TraceGeometry, Legs, tuple[Lanes, int, float], Lanes, Workspace]
+"""Geometry; legs; slopes, reflections at floor and ceiling, and the offset of heights; weights;
+what is added to."""
 
-    `image` holds slopes, reflections at floor and ceiling, and the offset of heights.
-    """
-    (slope, bounces, offset), building = image, geometry.building
-    heights, seen = (lanes_of(geometry.transmitter[2]), offset), workspace.coefficients
-    for f in range(len(every.wavelength)):
+
+@jit(inline=True, fast=True)
+def add_to_each(every: FrequencyTables, paths: OtherPaths) -> None:
+    """Add paths with each of the other tables to `Workspace.bundles`."""
+    geometry, legs, (slope, bounces, offset), weight, workspace = paths
+    building, seen = geometry.building, workspace.coefficients
+    heights = lanes_of(geometry.transmitter[2]), offset
+    for f in range(len(workspace.bundles)):
         tables, rows = tables_at(every, f), workspace.bundles[f]
         ray = new_ray(building, tables, slope, bounces)
         wave = launch(tables, legs.departure, ray.sin_elevation)
@@ -93,6 +89,14 @@ def add_to_others(
         bundle = loaded_bundle(tables, rows)
         bundle = with_path(bundle, gain, distance - legs.straight, weight, legs.arriving)
         store_bundle(rows, bundle)
+
+
+def add_to_others(every: FrequencyTables, paths: OtherPaths) -> None:
+    """Add paths with the other tables, if there are any."""
+    add_to_each(every, paths)
+
+
+chosen_by_type("others", no_others, add_to_others)(add_to_others)
 
 
 @jit(fast=True, allocates=False)
@@ -169,10 +173,9 @@ def sum_reflections(
                 gain = receive(tables, wave, arriving) * (phase * spreading)
                 count_path(workspace, order + ray.bounces, weight)
                 bundle = with_path(bundle, gain, distance - block.straight, weight, arriving)
-                if len(every.wavelength) > 0:
-                    legs = Legs(leg, n, length, (ux, uy), arriving, block.straight)
-                    image = slope, geometry.image_bounces[k], offset
-                    add_to_others(geometry, every, legs, image, weight, workspace)
+                legs = Legs(leg, n, length, (ux, uy), arriving, block.straight)
+                image = slope, geometry.image_bounces[k], offset
+                add_to_others(every, (geometry, legs, image, weight, workspace))
                 if collector.record.used[0] >= 0:
                     at = (block.first, block.n)
                     record_paths(collector.record, at, -1, (-1, k, side), gain, weight)

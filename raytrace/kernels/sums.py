@@ -47,7 +47,7 @@ class Sums(NamedTuple):
     not_grown
         (1,) bound on the power of the paths in beams that are not grown, at any receiver.
     touched
-        (n,) whether anything may have been added at a receiver.
+        (n,) whether anything was added at a receiver.
     bins
         (LEVELS,) paths below the threshold by their bounds, in steps of 1 dB downwards from 0 dB;
         counted only for an infinite threshold.

@@ -17,9 +17,15 @@ from raytrace.kernels.bounds import (
     leg_bound,
 )
 from raytrace.kernels.building import TraceGeometry
-from raytrace.kernels.compiling import jit
+from raytrace.kernels.compiling import chosen_by_type, jit
 from raytrace.kernels.field import new_ray, propagate
-from raytrace.kernels.field_tables import FieldTables, FrequencyTables, phasor, tables_at
+from raytrace.kernels.field_tables import (
+    FieldTables,
+    FrequencyTables,
+    no_others,
+    phasor,
+    tables_at,
+)
 from raytrace.kernels.guard import is_stopped
 from raytrace.kernels.lanes import (
     ComplexLanes,
@@ -239,23 +245,19 @@ def pair_at(pair: Pair, wavelength: float) -> Pair:
     )  # fmt: skip
 
 
-@jit(inner=True, fast=True)
-def add_to_others(
-    geometry: TraceGeometry,
-    every: FrequencyTables,
-    pair: Pair,
-    image: tuple[Lanes, int, float],
-    n_transmissions: Lanes,
-    weight: Lanes,
-    workspace: Workspace,
-    straight: Lanes,
-) -> None:
-    """Add paths with all tables but the first to `workspace.bundles`.
+OtherPaths = tuple[
+    TraceGeometry, Pair, tuple[Lanes, int, float], tuple[Lanes, Lanes, Lanes], Workspace
+]
+"""Geometry; legs; slopes, reflections at floor and ceiling, and the offset of heights; numbers of
+transmissions, weights, and distances from transmitter to receivers [m]; what is added to."""
 
-    `image` holds slopes, reflections at floor and ceiling, and the offset of heights.
-    """
-    slope, bounces, offset = image
-    for f in range(len(every.wavelength)):
+
+@jit(inline=True, fast=True)
+def add_to_each(every: FrequencyTables, paths: OtherPaths) -> None:
+    """Add paths with each of the other tables to `Workspace.bundles`."""
+    geometry, pair, (slope, bounces, offset), of_paths, workspace = paths
+    n_transmissions, weight, straight = of_paths
+    for f in range(len(workspace.bundles)):
         tables, rows = tables_at(every, f), workspace.bundles[f]
         gain, distance = pair_gain(
             geometry, tables, pair_at(pair, tables.wavelength), slope, bounces, offset,
@@ -265,6 +267,14 @@ def add_to_others(
         bundle = loaded_bundle(tables, rows)
         bundle = with_path(bundle, gain, distance - straight, weight, pair.out.arriving)
         store_bundle(rows, bundle)
+
+
+def add_to_others(every: FrequencyTables, paths: OtherPaths) -> None:
+    """Add paths with the other tables, if there are any."""
+    add_to_each(every, paths)
+
+
+chosen_by_type("others", no_others, add_to_others)(add_to_others)
 
 
 @jit(inline=True, fast=True)
@@ -307,11 +317,8 @@ def add_pair(
             count_path(workspace, pair.order + bounces, weight)
             excess = distance - block.straight
             bundle = with_path(bundle, gain, excess, weight, pair.out.arriving)
-            if len(every.wavelength) > 0:
-                image, straight = (slope, bounces, offset), block.straight
-                add_to_others(
-                    geometry, every, pair, image, n_transmissions, weight, workspace, straight
-                )
+            image, of_paths = (slope, bounces, offset), (n_transmissions, weight, block.straight)
+            add_to_others(every, (geometry, pair, image, of_paths, workspace))
             if collector.record.used[0] >= 0:
                 at, images = (block.first, block.n), (-1, k, side)
                 record_paths(collector.record, at, pair.number, images, gain, weight)

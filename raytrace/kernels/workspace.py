@@ -138,6 +138,7 @@ def add_rows(sums: Sums, workspace: Workspace, n: int, rows: Floats) -> None:
         r = workspace.receivers[j]
         for k in range(sums.field.shape[1]):
             sums.field[r, k] += complex(fields[2 * k, j], fields[2 * k + 1, j])
+        sums.touched[r] = True
         sums.power[r] += rows[0, j]
         moments = sums.moments[r]
         for k in range(EXCESS, STRONGEST):
@@ -216,4 +217,5 @@ def count_left_out(sums: Sums, bound: Lanes, left: Lanes) -> None:
 def add_left_out(sums: Sums, workspace: Workspace, n: int) -> None:
     """Add what is left out at the first n receivers of a block to the sums."""
     for j in range(n):
+        sums.touched[workspace.receivers[j]] = True
         sums.left_out[workspace.receivers[j]] += workspace.left[j]

@@ -127,7 +127,6 @@ class BeamClass(ABC, Generic[Beams]):
             batch, done = self._hit(grown, numbers, HIT_BATCH, guard)
             check_whole(guard, done > 0, HITS)
             for group, collector in zip(groups, collectors, strict=True):
-                collector.sums.touched[batch.hits.pair[:, 0]] = True
                 self._evaluate(batch, group, collector)
             numbers = numbers[done:]
         check_whole(guard, True, HITS)
@@ -135,7 +134,6 @@ class BeamClass(ABC, Generic[Beams]):
         for group, collector in zip(groups, collectors, strict=True):
             collector.sums.not_grown[0] = left_out
             collector.others.not_grown[:] = left_out
-            collector.others.touched[:] = collector.sums.touched
             others = (sums_of(collector.others, f) for f in range(len(group.numbers) - 1))
             found.update(zip(group.numbers, (collector.sums, *others), strict=True))
         return [found[k] for k in range(len(evaluations))]

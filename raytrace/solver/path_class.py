@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from raytrace.arrays import Floats, Ints
-from raytrace.kernels.field_tables import FieldTables, FrequencyTables
+from raytrace.kernels.field_tables import FieldTables, FrequencyTables, OtherTables
 from raytrace.kernels.steps import Steps
 from raytrace.kernels.sums import PAIRS, Sums
 from raytrace.results.paths import Paths
@@ -114,19 +114,20 @@ def grouped(evaluations: tuple[Evaluation, ...], by_first: bool) -> list[Evaluat
 
 
 def _joined(first: FieldTables, *others: FieldTables) -> FrequencyTables:
-    def joined(like: Floats, arrays: list[Floats]) -> Floats:
-        return np.stack(arrays) if arrays else np.empty((0, *like.shape))
-
+    if not others:
+        return FrequencyTables(first)
     return FrequencyTables(
         first,
-        np.array([one.wavelength for one in others]),
-        joined(first.reflection, [one.reflection for one in others]),
-        joined(first.transmission, [one.transmission for one in others]),
-        joined(first.transmit, [one.transmit for one in others]),
-        joined(first.receive, [one.receive for one in others]),
-        (
-            joined(first.patterns[0], [one.patterns[0] for one in others]),
-            joined(first.patterns[1], [one.patterns[1] for one in others]),
+        OtherTables(
+            np.array([one.wavelength for one in others]),
+            np.stack([one.reflection for one in others]),
+            np.stack([one.transmission for one in others]),
+            np.stack([one.transmit for one in others]),
+            np.stack([one.receive for one in others]),
+            (
+                np.stack([one.patterns[0] for one in others]),
+                np.stack([one.patterns[1] for one in others]),
+            ),
         ),
     )
 
