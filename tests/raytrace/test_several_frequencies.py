@@ -67,8 +67,10 @@ def test_beams_of_one_place_are_grown_once(
     assert done[-1] == (5000, 5000)
     for name, transmitter in TRANSMITTERS.items():
         alone = compute_radio_map(ROOM.scene, transmitter, GRID, config)
-        for layer in LAYERS:
-            np.testing.assert_array_equal(getattr(maps[name], layer), getattr(alone, layer))
+        np.testing.assert_array_equal(maps[name].path_count, alone.path_count)
+        for layer in LAYERS:  # up to rounding, which the small spread of angles magnifies
+            values = getattr(maps[name], layer), getattr(alone, layer)
+            np.testing.assert_allclose(*values, rtol=0.0, atol=1e-6)
 
 
 RANGE = TraceConfig(2, 1, None, -120.0, dynamic_range_db=20.0)
@@ -146,7 +148,7 @@ def test_equal_transmitters_have_equal_maps() -> None:
     maps = compute_radio_maps(ROOM.scene, transmitters, GRID, RANGE)
     for layer in LAYERS:
         one, other = (getattr(maps[name], layer) for name in ("2.4 GHz", "2.4 GHz again"))
-        np.testing.assert_array_equal(one, other)
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-6)
 
 
 @pytest.mark.parametrize("config", [RANGE, TraceConfig(1, 0, 1), TraceConfig(1, 0, 1, -90.0)])
