@@ -237,10 +237,11 @@ def compute_radio_maps(
 
     Transmitters at one place, such as those of an access point at several frequencies, share
     beams and paths. Where numbers limit these, the maps are those of `compute_radio_map` up to
-    rounding. Where a dynamic range does, transmitters that differ in their frequencies alone share them: the paths
-    are chosen at the lowest frequency, for which the map is that of `compute_radio_map`, and how
-    much is left out at the others is not bounded (`RadioMap.left_out_db` is infinite). Otherwise a
-    least power limits them, and each transmitter is traced alone.
+    rounding. Where a dynamic range does, transmitters that differ in their frequencies alone share
+    them: the paths are chosen at the lowest frequency, for which the map is that of
+    `compute_radio_map`, and how much is left out at the others is not bounded
+    (`RadioMap.left_out_db` is infinite). Otherwise a least power limits them, and each transmitter
+    is traced alone.
 
     Parameters
     ----------
