@@ -31,7 +31,7 @@ class Preset:
 
 RANGE_DB = 15.0
 """Paths further than this below what is reflected and transmitted to a receiver are left out of
-maps of buildings, which costs 0.2 to 0.4 dB and saves most of the time (docs/performance.md)."""
+maps of buildings, which costs 0.3 to 0.7 dB and saves most of the time (docs/performance.md)."""
 
 BY_LOSS: dict[str, Any] = {"min_power_dbm": SENSITIVITY_DBM, "dynamic_range_db": RANGE_DB}
 """Limits of a trace whose transmissions have no maximum number."""
