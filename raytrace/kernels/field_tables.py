@@ -4,10 +4,11 @@ They depend on materials, antennas and the frequency alone, not on the geometry 
 """
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from raytrace.arrays import Floats
-from raytrace.kernels.compiling import jit
+from raytrace.kernels.compiling import chosen_by_type, jit
 from raytrace.kernels.lanes import (
     ComplexLanes,
     Lanes,
@@ -124,8 +125,17 @@ def tables_at(every: FrequencyTables, f: int) -> FieldTables:
     )  # fmt: skip
 
 
-def no_others(every: FrequencyTables, paths: Any) -> None:
-    """Add nothing to sums with other tables, where there are none."""
+def for_others(kernel: Callable[[FrequencyTables, Any], None]) -> Callable[..., None]:
+    """Let kernels call one that adds paths with other tables; where there are none, no code is."""
+
+    def add_to_others(every: FrequencyTables, paths: Any) -> None:
+        kernel(every, paths)
+
+    def add_nothing(every: FrequencyTables, paths: Any) -> None:
+        pass
+
+    chosen_by_type("others", add_nothing, add_to_others)(add_to_others)
+    return add_to_others
 
 
 @jit(inline=True)

@@ -14,8 +14,8 @@ from raytrace.kernels.bounds import (
     free_space,
 )
 from raytrace.kernels.building import TraceGeometry
-from raytrace.kernels.compiling import chosen_by_type, jit
-from raytrace.kernels.field_tables import FieldTables, FrequencyTables, no_others, tables_at
+from raytrace.kernels.compiling import jit
+from raytrace.kernels.field_tables import FieldTables, FrequencyTables, for_others, tables_at
 from raytrace.kernels.guard import is_stopped
 from raytrace.kernels.horizontal_edge_bounds import distance_bins
 from raytrace.kernels.horizontal_edge_field import (
@@ -92,8 +92,9 @@ OtherPaths = tuple[
 transmissions, lengths beyond the straight line [m] and weights; what is added to."""
 
 
+@for_others
 @jit(inline=True, fast=True)
-def add_to_each(every: FrequencyTables, paths: OtherPaths) -> None:
+def add_to_others(every: FrequencyTables, paths: OtherPaths) -> None:
     """Add paths with each of the other tables to `Workspace.bundles`."""
     geometry, path, legs, of_paths, work = paths
     images, offsets, n_transmissions, excess, weight = of_paths
@@ -102,14 +103,6 @@ def add_to_each(every: FrequencyTables, paths: OtherPaths) -> None:
         gain = edge_gain(geometry, tables, path, legs, images, offsets, n_transmissions, work)
         bundle = with_path(loaded_bundle(tables, rows), gain, excess, weight, legs.arriving)
         store_bundle(rows, bundle)
-
-
-def add_to_others(every: FrequencyTables, paths: OtherPaths) -> None:
-    """Add paths with the other tables, if there are any."""
-    add_to_each(every, paths)
-
-
-chosen_by_type("others", no_others, add_to_others)(add_to_others)
 
 
 @jit(inner=True, fast=True)

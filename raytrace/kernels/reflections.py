@@ -5,16 +5,32 @@ from typing import NamedTuple
 
 import numpy as np
 
+from raytrace.arrays import Floats
 from raytrace.kernels.beam_hits import Hits
 from raytrace.kernels.beams import FRACTION, IMAGE_X, IMAGE_Y, ORDER, Tree
 from raytrace.kernels.blocks import next_block
 from raytrace.kernels.bounds import all_heights, free_space, image_bound, leg_bound
 from raytrace.kernels.building import TraceGeometry
-from raytrace.kernels.compiling import chosen_by_type, jit
+from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
-from raytrace.kernels.field_tables import FrequencyTables, no_others, phasor, tables_at
+from raytrace.kernels.field_tables import (
+    FieldTables,
+    FrequencyTables,
+    for_others,
+    phasor,
+    tables_at,
+)
 from raytrace.kernels.guard import is_stopped
-from raytrace.kernels.lanes import Lanes, all_false, any_of, lanes_of, load, minimum
+from raytrace.kernels.lanes import (
+    ComplexLanes,
+    Lanes,
+    MatrixLanes,
+    all_false,
+    any_of,
+    lanes_of,
+    load,
+    minimum,
+)
 from raytrace.kernels.records import record_paths
 from raytrace.kernels.sums import empty_bundle, loaded_bundle, store_bundle, with_path
 from raytrace.kernels.unfolding import Leg, unfold
@@ -66,37 +82,46 @@ class Legs(NamedTuple):
     straight: Lanes
 
 
+@jit(inline=True, fast=True)
+def gain_along(
+    geometry: TraceGeometry,
+    tables: FieldTables,
+    legs: Legs,
+    image: tuple[Lanes, int, float],
+    seen: Floats,
+) -> tuple[ComplexLanes | MatrixLanes, Lanes]:
+    """Gains of paths, and their lengths [m].
+
+    `image` holds slopes, reflections at floor and ceiling, and the offset of heights; for `seen`
+    see `field.propagate`.
+    """
+    (slope, bounces, offset), building = image, geometry.building
+    heights = lanes_of(geometry.transmitter[2]), offset
+    ray = new_ray(building, tables, slope, bounces)
+    wave = launch(tables, legs.departure, ray.sin_elevation)
+    wave = propagate(building, tables, legs.leg, legs.n, legs.length, ray, heights, seen, wave)
+    distance = legs.length * ray.sec_elevation
+    phase = phasor(tables.cis, distance * (1.0 / tables.wavelength))
+    spreading = (tables.wavelength / (4.0 * math.pi)) / distance
+    return receive(tables, wave, legs.arriving) * (phase * spreading), distance
+
+
 OtherPaths = tuple[TraceGeometry, Legs, tuple[Lanes, int, float], Lanes, Workspace]
 """Geometry; legs; slopes, reflections at floor and ceiling, and the offset of heights; weights;
 what is added to."""
 
 
+@for_others
 @jit(inline=True, fast=True)
-def add_to_each(every: FrequencyTables, paths: OtherPaths) -> None:
+def add_to_others(every: FrequencyTables, paths: OtherPaths) -> None:
     """Add paths with each of the other tables to `Workspace.bundles`."""
-    geometry, legs, (slope, bounces, offset), weight, workspace = paths
-    building, seen = geometry.building, workspace.coefficients
-    heights = lanes_of(geometry.transmitter[2]), offset
+    geometry, legs, image, weight, workspace = paths
     for f in range(len(workspace.bundles)):
         tables, rows = tables_at(every, f), workspace.bundles[f]
-        ray = new_ray(building, tables, slope, bounces)
-        wave = launch(tables, legs.departure, ray.sin_elevation)
-        wave = propagate(building, tables, legs.leg, legs.n, legs.length, ray, heights, seen, wave)
-        distance = legs.length * ray.sec_elevation
-        phase = phasor(tables.cis, distance * (1.0 / tables.wavelength))
-        spreading = (tables.wavelength / (4.0 * math.pi)) / distance
-        gain = receive(tables, wave, legs.arriving) * (phase * spreading)
+        gain, distance = gain_along(geometry, tables, legs, image, workspace.coefficients)
         bundle = loaded_bundle(tables, rows)
         bundle = with_path(bundle, gain, distance - legs.straight, weight, legs.arriving)
         store_bundle(rows, bundle)
-
-
-def add_to_others(every: FrequencyTables, paths: OtherPaths) -> None:
-    """Add paths with the other tables, if there are any."""
-    add_to_each(every, paths)
-
-
-chosen_by_type("others", no_others, add_to_others)(add_to_others)
 
 
 @jit(fast=True, allocates=False)
@@ -122,7 +147,6 @@ def sum_reflections(
         Added to.
     """
     (tree, hits), building, tables = beams, geometry.building, every.first
-    wavelength = tables.wavelength
     z_transmitter = geometry.transmitter[2]
     z_root = lanes_of(z_transmitter)
     zero = first = int(np.int64(0))  # a literal would be compiled as a type of its own
@@ -163,18 +187,11 @@ def sum_reflections(
                     collector, workspace, least, of_image, weight, (1.0, lanes_of(1.0))
                 )
             if any_of(weight > 0.0):
-                ray = new_ray(building, tables, slope, geometry.image_bounces[k])
-                wave = launch(tables, (ux, uy), ray.sin_elevation)
-                heights, seen = (z_root, offset), workspace.coefficients
-                wave = propagate(building, tables, leg, n, length, ray, heights, seen, wave)
-                distance = length * ray.sec_elevation
-                phase = phasor(tables.cis, distance * (1.0 / wavelength))
-                spreading = (wavelength / (4.0 * math.pi)) / distance
-                gain = receive(tables, wave, arriving) * (phase * spreading)
-                count_path(workspace, order + ray.bounces, weight)
-                bundle = with_path(bundle, gain, distance - block.straight, weight, arriving)
                 legs = Legs(leg, n, length, (ux, uy), arriving, block.straight)
                 image = slope, geometry.image_bounces[k], offset
+                gain, distance = gain_along(geometry, tables, legs, image, workspace.coefficients)
+                count_path(workspace, order + geometry.image_bounces[k], weight)
+                bundle = with_path(bundle, gain, distance - block.straight, weight, arriving)
                 add_to_others(every, (geometry, legs, image, weight, workspace))
                 if collector.record.used[0] >= 0:
                     at = (block.first, block.n)

@@ -200,30 +200,30 @@ def empty_bundle(tables: FieldTables) -> Bundle:
 chosen_by_type("unknown", _empty, _empty_matrices)(empty_bundle)
 
 
-def _loaded(tables: FieldTables, rows: Floats) -> Bundle:
-    return Bundle(
-        element(rows, 0), load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]),
-        load(rows[4]), load(rows[5]),
-    )  # fmt: skip
+def _field(tables: FieldTables, rows: Floats) -> ComplexLanes | MatrixLanes:
+    return element(rows, 0)
 
 
-def _loaded_matrices(tables: FieldTables, rows: Floats) -> Bundle:
-    one, other = (
-        row_of(element(rows, 0), element(rows, 1)),
-        row_of(element(rows, 2), element(rows, 3)),
-    )
-    return Bundle(
-        matrix_of(one, other), load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]),
-        load(rows[4]), load(rows[5]),
-    )  # fmt: skip
+def _matrices(tables: FieldTables, rows: Floats) -> ComplexLanes | MatrixLanes:
+    one = row_of(element(rows, 0), element(rows, 1))
+    return matrix_of(one, row_of(element(rows, 2), element(rows, 3)))
 
 
+def loaded_field(tables: FieldTables, rows: Floats) -> ComplexLanes | MatrixLanes:
+    """Read the field of a bundle, of gains as `waves.receive` returns them."""
+    return _field(tables, rows) if tables.unknown is None else _matrices(tables, rows)
+
+
+chosen_by_type("unknown", _field, _matrices)(loaded_field)
+
+
+@jit(inline=True)
 def loaded_bundle(tables: FieldTables, rows: Floats) -> Bundle:
-    """Read a bundle, of gains as `waves.receive` returns them, from rows (BUNDLE_ROWS, 8)."""
-    return _loaded(tables, rows) if tables.unknown is None else _loaded_matrices(tables, rows)
-
-
-chosen_by_type("unknown", _loaded, _loaded_matrices)(loaded_bundle)
+    """Read a bundle from rows (BUNDLE_ROWS, 8)."""
+    return Bundle(
+        loaded_field(tables, rows), load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]),
+        load(rows[4]), load(rows[5]),
+    )  # fmt: skip
 
 
 @jit(inline=True, fast=True)

@@ -17,12 +17,12 @@ from raytrace.kernels.bounds import (
     leg_bound,
 )
 from raytrace.kernels.building import TraceGeometry
-from raytrace.kernels.compiling import chosen_by_type, jit
+from raytrace.kernels.compiling import jit
 from raytrace.kernels.field import new_ray, propagate
 from raytrace.kernels.field_tables import (
     FieldTables,
     FrequencyTables,
-    no_others,
+    for_others,
     phasor,
     tables_at,
 )
@@ -252,8 +252,9 @@ OtherPaths = tuple[
 transmissions, weights, and distances from transmitter to receivers [m]; what is added to."""
 
 
+@for_others
 @jit(inline=True, fast=True)
-def add_to_each(every: FrequencyTables, paths: OtherPaths) -> None:
+def add_to_others(every: FrequencyTables, paths: OtherPaths) -> None:
     """Add paths with each of the other tables to `Workspace.bundles`."""
     geometry, pair, (slope, bounces, offset), of_paths, workspace = paths
     n_transmissions, weight, straight = of_paths
@@ -267,14 +268,6 @@ def add_to_each(every: FrequencyTables, paths: OtherPaths) -> None:
         bundle = loaded_bundle(tables, rows)
         bundle = with_path(bundle, gain, distance - straight, weight, pair.out.arriving)
         store_bundle(rows, bundle)
-
-
-def add_to_others(every: FrequencyTables, paths: OtherPaths) -> None:
-    """Add paths with the other tables, if there are any."""
-    add_to_each(every, paths)
-
-
-chosen_by_type("others", no_others, add_to_others)(add_to_others)
 
 
 @jit(inline=True, fast=True)

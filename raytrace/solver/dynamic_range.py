@@ -110,7 +110,8 @@ def beam_parts(tracing: Tracing, count: int) -> list[Ints]:
     for group in np.argsort(-work, kind="stable"):
         part_of[group] = np.argmin(taken)
         taken[part_of[group]] += work[group]
-    return [np.flatnonzero(part_of[groups[cells]] == k) for k in range(count) if k == 0 or taken[k]]
+    part = part_of[groups[cells]]
+    return [np.flatnonzero(part == k) for k in range(count) if k == 0 or taken[k]]
 
 
 def _points(scene: Scene, z: float) -> Floats:
